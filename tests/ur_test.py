@@ -3,6 +3,7 @@
 imported. SNUG names the program."""
 import json
 import os
+import re
 import signal
 import socket
 import struct
@@ -287,6 +288,20 @@ class Run(unittest.TestCase):
         for model in ("ur10", "ur10e"):
             result = json.loads(self.call("run", self.script, *self.cell, "--model", model, "--json").stdout)
             self.assertEqual({box["id"] for box in result["boxes"] if box["state"] == "packed"}, self.packed)
+
+    def test_every_form_of_an_export_is_run_to_its_end(self):
+        program, script = Path(self.folder.name) / "small.csv", Path(self.folder.name) / "form.script"
+        first, second = list(dict.fromkeys(re.findall(r"\bBox\(?_?(BOX\d+)", program.read_text())))[:2]
+        for words, skip in ((["--payload-inertia"], []), (["--dry-run"], []), (["--from-box", second], ["--skip", first])):
+            self.call("export", program, "--scenario", *self.cell, "--format", "urscript", "-o", script, *words)
+            result = json.loads(self.call("run", script, *self.cell, *skip, "--json").stdout)
+            packed = {box["id"] for box in result["boxes"] if box["state"] == "packed"}
+            if words == ["--dry-run"]:
+                self.assertEqual(packed, set())
+            elif not skip:
+                self.assertEqual(packed, self.packed)
+            else:  # what stood on the first box may lie elsewhere
+                self.assertIn(second, packed)
 
     def test_mistakes_are_told_with_their_place(self):
         broken = Path(self.folder.name) / "broken.script"

@@ -158,7 +158,8 @@ class Robot:
     """A UR that does what a script says: moves from stop to stop, targets of servoj step by step."""
 
     def __init__(self, urdf, seals=True, evacuation=0.3, vacuum_output=0, vacuum_input=0, step=STEP, stalls_at=math.inf,
-                 offset=(0.0,) * 6):
+                 offset=(0.0,) * 6, part_input=1, part_comes=0.0, lingering=0.0):
+        self.part_input, self.part_comes, self.lingering, self.inertia = part_input, part_comes, lingering, None
         self.arm, self.seals, self.evacuation = Arm(urdf), seals, evacuation
         self.stalls_at, self.stalled, self.offset = stalls_at, None, offset  # s of servoj, then where; rad of each joint
         self.vacuum_output, self.vacuum_input = vacuum_output, vacuum_input
@@ -169,7 +170,7 @@ class Robot:
         self.targets, self.stops = [], []  # of each stop the number of targets before it
 
     def run(self, text):
-        names = ("set_tcp", "set_payload", "movej", "movel", "servoj", "stopj", "set_standard_digital_out",
+        names = ("set_tcp", "set_payload", "set_target_payload", "get_tool_analog_in", "movej", "movel", "servoj", "stopj", "set_standard_digital_out",
                  "get_standard_digital_in", "get_actual_joint_positions", "sync", "get_steptime", "sleep", "textmsg",
                  "popup")
         scope = {name: getattr(self, name) for name in names}
@@ -206,8 +207,23 @@ class Robot:
             self.switched[number] = self.time
         self.outputs[number] = value
 
+    def set_target_payload(self, mass, com, inertia, transition):
+        if len(inertia) != 6 or min(inertia[:3]) <= 0.0 or not 0.0 < transition < 1.0:
+            raise ScriptError(f"set_target_payload({inertia}, {transition})")
+        self.set_payload(mass, com)
+        self.inertia = inertia
+
+    def get_tool_analog_in(self, number):
+        """The gauge: 10 V at -1e5 Pa. It falls to 0 a while after the switch does, `lingering`."""
+        self._stand("an input")
+        since = self.time - self.switched.get(self.vacuum_output, -1e9)
+        is_empty = not self.outputs.get(self.vacuum_output, False) and since >= self.evacuation + self.lingering
+        return 0.0 if is_empty or number != 0 else 6.0
+
     def get_standard_digital_in(self, number):
         self._stand("an input")
+        if number == self.part_input:
+            return self.time >= self.part_comes
         if number != self.vacuum_input:
             return False
         is_on = self.outputs.get(self.vacuum_output, False)

@@ -130,6 +130,35 @@ class UrScript(unittest.TestCase):
             self.assertGreaterEqual(lift.begin - robot.switched[0], 0.1 + vent)
             self.assertLess(text.index("set_standard_digital_out(1, False)"), text.index("movej("))
 
+    def test_the_gauge_has_the_last_word_of_whether_the_cup_is_empty(self):
+        text = self.export(PROGRAM, "--vent-time", 0.1)
+        robot = self.run_script(text, evacuation=0.1, lingering=1.0)
+        lift = next(after for before, after in zip(robot.moves, robot.moves[1:]) if before.vacuum and not after.vacuum)
+        self.assertGreaterEqual(lift.begin - robot.switched[0], 1.1)
+        with self.assertRaises(Halted) as halted:
+            self.run_script(text, evacuation=0.1, lingering=60.0)
+        self.assertIn("the vacuum did not go before Place", str(halted.exception))
+
+    def test_waits_above_the_aligner_until_a_box_is_there(self):
+        text = self.export(PROGRAM, "--part-timeout", 30)
+        robot = self.run_script(text, part_comes=20.0)
+        down = next(move for move in robot.moves if move.begin >= 20.0)
+        self.assertLess(math.dist(down.goal[1], (-0.494, -0.43, 0.06)), PRECISE)
+        with self.assertRaises(Halted) as halted:
+            self.run_script(text, part_comes=1e9)
+        self.assertIn("no box came for Box027", str(halted.exception))
+
+    def test_payloads_may_have_their_inertia(self):
+        robot = self.run_script(self.export(PROGRAM, "--payload-inertia"))
+        self.assertEqual(len(robot.inertia), 6)
+        self.assertAlmostEqual(robot.payload[0], GRIPPER, places=3)
+
+    def test_a_dry_run_touches_nothing(self):
+        robot = self.run_script(self.export(PROGRAM, "--dry-run"), seals=False, part_comes=1e9)
+        self.assertNotIn(True, robot.outputs.values())
+        self.assertAlmostEqual(min(move.goal[1][2] for move in robot.moves), -0.115 + 0.02, places=5)
+        self.assertGreater(robot.time, 3.0 * self.run_script(self.export(), evacuation=0.1).time)
+
     def test_inputs_and_outputs_are_those_asked_for(self):
         text = self.export(PROGRAM, "--vacuum-output", 3, "--blow-off-output", 4, "--vacuum-input", 5)
         robot = self.run_script(text, vacuum_output=3, vacuum_input=5)
@@ -312,6 +341,18 @@ class FastUrScript(unittest.TestCase):
             robot.run(text)
         self.assertTrue(robot.outputs[0], "the box is not let go where the arm stalled")
         self.assertEqual(len(robot.stops), 2)
+
+    def test_begins_with_the_second_box_at_rest_above_it(self):
+        whole, robot = self.run_script(self.export()), self.run_script(self.export("urscript", "--from-box", "ITEM000002"))
+        held = {round(target.payload[0] - GRIPPER, 3) for target in robot.targets if target.vacuum}
+        self.assertEqual(held, {self.MASSES[1]})
+        self.assertLess(len(robot.targets), 0.8 * len(whole.targets))
+        self.assertEqual(robot.targets[-1].q, whole.targets[-1].q)
+        self.assertEqual(len(whole.stops) - len(robot.stops), 2)
+        result = snug("export", self.program, "--scenario", CELL, "--items", self.orders, "--sequence", "two", "--format", "urscript",
+                      "-o", self.folder / "x", "--from-box", "ITEM000003")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("ITEM000001, ITEM000002", result.stderr)
 
     def test_ends_at_rest_with_everything_off(self):
         robot = self.run_script(self.export())

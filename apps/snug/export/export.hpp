@@ -29,6 +29,9 @@ struct ExportOptions {
   double period = 0.04;              ///< s, between the points of a trajectory
   bool is_unchecked = false;         ///< not simulated before it is written
   control::UrScriptOptions script;
+  // of urscript, instead of what the scenario says: numbers of standard outputs and inputs
+  std::optional<int> vacuum_output, blow_off_output, vacuum_input, part_input;
+  std::string from_box;  ///< id; empty: the program's first
 };
 
 /// One format that can be asked for.

@@ -19,6 +19,8 @@ Examples:
   snug export run.h5 --format mcap --from 10 --to 20 --every 4 -o part.mcap
   snug export run.h5 --format csv -o run.csv
   snug export program.csv --scenario scenarios/box-demonstrator.yaml --format urscript -o program.script
+  snug export program.csv --scenario scenarios/box-demonstrator.yaml --format urscript --dry-run -o dry.script
+  snug export program.csv --scenario scenarios/box-demonstrator.yaml --format urscript --from-box BOX028 -o rest.script
   snug export program.csv --scenario scenarios/box-demonstrator.yaml --format ros-trajectory -o program.yaml
 A program that was packed with fast motions is exported with its own timing, as it is simulated in the scenario's cell.)";
 
@@ -51,6 +53,11 @@ constexpr std::array kOptionFormats = {
     OptionFormats{"--vacuum-input", "urscript"},
     OptionFormats{"--vacuum-timeout", "urscript"},
     OptionFormats{"--vent-time", "urscript"},
+    OptionFormats{"--part-input", "urscript"},
+    OptionFormats{"--part-timeout", "urscript"},
+    OptionFormats{"--payload-inertia", "urscript"},
+    OptionFormats{"--from-box", "urscript"},
+    OptionFormats{"--dry-run", "urscript"},
 };
 
 /// Throws InputError for an option that was given and means nothing to the format.
@@ -62,6 +69,19 @@ void refuse_without_effect(const CLI::App& verb, const std::string& format) {
     throw InputError("command line", entry.option, "with --format " + format,
                      "--format " + CLI::detail::join(formats, " or "));
   }
+}
+
+/// Single outputs and inputs, standard ones, in the place of those of the scenario.
+void add_wiring(CLI::App& verb, ExportOptions& options) {
+  const auto add = [&](const char* name, std::optional<int>& number, const std::string& what) {
+    verb.add_option(name, number, "of urscript: " + what + " (default: robot.io of the scenario)")
+        ->check(whole(0, 7))
+        ->type_name("N");
+  };
+  add("--vacuum-output", options.vacuum_output, "standard digital output of the vacuum");
+  add("--blow-off-output", options.blow_off_output, "standard digital output of the blow-off");
+  add("--vacuum-input", options.vacuum_input, "standard digital input that is on while there is vacuum");
+  add("--part-input", options.part_input, "standard digital input that is on while a box stands at the aligner");
 }
 
 }  // namespace
@@ -110,33 +130,36 @@ void add_export(CLI::App& app, Action& action) {
       "--unchecked", options->is_unchecked,
       "of a program: write it without simulating it first; otherwise it is refused where the robot stops, no box is "
       "sealed or a box is lost");
-  verb.add_option("--period", options->period, "of ros-trajectory: time between points")
+  verb.add_option("--period", options->period, "of ros-trajectory: time between points at most")
       ->check(within(1e-3, 100.0))
       ->type_name("SECONDS")
       ->capture_default_str();
-  verb.add_option("--vacuum-output", options->script.vacuum_output, "of urscript: digital output of the vacuum")
-      ->check(whole(0, 7))
-      ->type_name("N")
-      ->capture_default_str();
-  verb.add_option("--blow-off-output", options->script.blow_off_output, "of urscript: digital output of the blow-off")
-      ->check(whole(0, 7))
-      ->type_name("N")
-      ->capture_default_str();
-  verb.add_option("--vacuum-input", options->script.vacuum_input,
-                  "of urscript: digital input that is on while there is vacuum")
-      ->check(whole(0, 7))
-      ->type_name("N")
-      ->capture_default_str();
+  add_wiring(verb, *options);
   verb.add_option("--vacuum-timeout", options->script.vacuum_timeout,
                   "of urscript: the program halts when the vacuum has not changed by then")
       ->check(within(0.1, 600.0))
       ->type_name("SECONDS")
       ->capture_default_str();
   verb.add_option("--vent-time", options->script.vent_time,
-                  "of urscript: from when the input says that the vacuum fell until it is gone")
+                  "of urscript: from when the input says that the vacuum fell until it is gone; where robot.io has a "
+                  "gauge, that has to say so as well")
       ->check(within(0.0, 60.0))
       ->type_name("SECONDS")
       ->capture_default_str();
+  verb.add_option("--part-timeout", options->script.part_timeout,
+                  "of urscript: the program halts when no box stands at the aligner by then")
+      ->check(within(0.1, 86400.0))
+      ->type_name("SECONDS")
+      ->capture_default_str();
+  verb.add_flag(
+      "--payload-inertia", options->script.has_inertia,
+      "of urscript: payloads with inertia, changed over 0.1 s (set_target_payload, PolyScope 5.10 and later)");
+  CLI::Option* from_box = verb.add_option("--from-box", options->from_box,
+                                          "of urscript: begin with this box: those before it lie where they belong")
+                              ->type_name("BOX");
+  verb.add_flag("--dry-run", options->script.is_dry,
+                "of urscript: rows as straight moves 20 mm higher, at a quarter of their speed, nothing switched")
+      ->excludes(from_box);
   verb.add_option("--urdf", options->urdf,
                   "of mcap: how the robot in it looks (default: the file that its scenario names)")
       ->type_name("FILE.urdf");

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 
@@ -15,6 +16,8 @@
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/core/write_file.hpp"
+#include "snug/cup/phases.hpp"
+#include "snug/model/robot_io.hpp"
 #include "snug/motion/fitted_limits.hpp"
 #include "snug/motion/program_csv.hpp"
 #include "snug/motion/waypoint_name.hpp"
@@ -51,19 +54,20 @@ struct LoadedProgram {
   [[nodiscard]] bool is_fast() const { return motion::is_fast(plan.settings.tracking); }
 
   /// `done`: the motion that is written, as simulated or fitted to that.
-  [[nodiscard]] control::RobotProgram for_robot(const motion::PreparedProgram& done,
-                                                const ExportOptions& options) const {
+  [[nodiscard]] control::RobotProgram for_robot(const motion::PreparedProgram& done, const ExportOptions& options,
+                                                bool is_ur = false) const {
     const std::string layer = layer_of(options).empty() ? "" : ", corrections " + options.corrections;
     const std::string tempo = is_fast() ? fmt::format(", tempo {}", motion::tempo_of(plan.settings.tracking)) : "";
     return {.plan = done,
             .arm = simulation.arm()->model(),
             .q_start = simulation.arm()->start(),
             .loads = find_loads(),
-            .notes = {
-                fmt::format("snug {}", version_text()),
-                fmt::format("program {}, {} waypoints{}{}", options.input, plan.program.waypoints.size(), layer, tempo),
-                fmt::format("scenario {}, sequence {}, robot {}", simulation.scenario().name,
-                            simulation.sequence().name, simulation.arm()->model().name)}};
+            .notes = {fmt::format("snug {}", version_text()),
+                      fmt::format("program {}, {} waypoints{}{}", options.input, plan.program.waypoints.size(), layer,
+                                  tempo),
+                      fmt::format("scenario {}, sequence {}, robot {}", simulation.scenario().name,
+                                  simulation.sequence().name, simulation.arm()->model().name)},
+            .flange = is_ur || has_tool0() ? "tool0" : simulation.scenario().robot->flange_frame};
   }
 
   /// The program for a robot that follows exactly: the same rows with speeds and accelerations of the simulated motion.
@@ -73,6 +77,9 @@ struct LoadedProgram {
     exact.settings.tracking = motion::ExactTracking{};
     return exact;
   }
+
+  /// The flange's frame as UR, ROS-Industrial and others name it.
+  [[nodiscard]] bool has_tool0() const { return robot::find_link(simulation.arm()->model(), "tool0") >= 0; }
 
   [[nodiscard]] const Pose& X_WE_start() const { return simulation.scenario().controller.X_WE_start; }
 
@@ -89,7 +96,8 @@ struct LoadedProgram {
       if (const std::optional<cell::HeldBox>& held = boxes.held()) {
         const std::string& id = simulation.sequence().items[static_cast<std::size_t>(held->item)].parcel;
         const SpatialInertia& inertia = model::find_parcel(simulation.scenario(), id)->inertia;
-        loads.back() = {inertia.mass, held->X_EP * inertia.com};
+        const Matrix3& R_EP = held->X_EP.R;
+        loads.back() = {inertia.mass, held->X_EP * inertia.com, R_EP * inertia.inertia * R_EP.transpose()};
       }
       if (boxes.is_unknown() && !was_unknown) {
         std::fprintf(
@@ -175,12 +183,14 @@ int write_run(const ExportOptions& options, OutputFile output, Format format) {
 }
 
 /// Rows as straight moves.
-int write_moves(const ExportOptions& options, const LoadedProgram& program, OutputFile output) {
-  const motion::PreparedProgram fitted = program.fitted();
-  control::RobotProgram robot_program = program.for_robot(fitted, options);
+int write_moves(const ExportOptions& options, const control::UrScriptOptions& script_options,
+                const LoadedProgram& program, OutputFile output) {
+  const motion::PreparedProgram moves = program.is_fast() ? program.plan : program.fitted();
+  control::RobotProgram robot_program = program.for_robot(moves, options, true);
   robot_program.simulated_duration = motion::compute_duration(program.plan, program.X_WE_start());
-  const control::UrScript script = control::format_urscript(robot_program, options.script);
-  if (!has_succeeded(program) || !is_as_good(fitted, program)) return kRunFailed;
+  const control::UrScript script = control::format_urscript(robot_program, script_options);
+  if (!has_succeeded(program)) return kRunFailed;
+  if (!program.is_fast() && !is_as_good(moves, program)) return kRunFailed;
   write_file(std::move(output), script.text);
   std::fprintf(stderr,
                "%s: %d moves, %.1f s nominal from stop to stop; %.1f s simulated, with a controller that lags behind\n",
@@ -188,12 +198,35 @@ int write_moves(const ExportOptions& options, const LoadedProgram& program, Outp
   return kSuccess;
 }
 
+/// The part of a run from a row on, which is gone to at rest: where the tool is highest on the way there from what was
+/// let go before.
+control::JointRun cut_run(const control::JointRun& run, std::size_t first_row, double tick) {
+  if (first_row == 0) return run;
+  const auto& samples = run.samples;
+  std::size_t end = 0;
+  while (end < samples.size() && samples[end].row < static_cast<int>(first_row)) ++end;
+  while (end + 1 < samples.size() && !samples[end + 1].io.vacuum) ++end;
+  std::size_t begin = end;
+  while (begin > 0 && !samples[begin - 1].io.vacuum) --begin;
+  std::size_t highest = begin;
+  for (std::size_t i = begin; i <= end; ++i) {
+    if (samples[i].tool.X_WE.p.z() > samples[highest].tool.X_WE.p.z()) highest = i;
+  }
+  std::size_t stop = highest + 1;  // the joints rest there: up to it the ramp may go
+  while (stop < end && samples[stop].before.qd.norm() > control::kAlmostAtRest) ++stop;
+  constexpr std::size_t kMostRamp = 60;
+  const std::size_t ramp = std::min(kMostRamp, stop - highest);
+  return ramp == 0 || highest + ramp >= samples.size() ? run : control::begin_at(run, highest, ramp, tick);
+}
+
 /// Joints in time.
-int write_targets(const ExportOptions& options, const LoadedProgram& program, OutputFile output) {
+int write_targets(const ExportOptions& options, const control::UrScriptOptions& script_options,
+                  const LoadedProgram& program, OutputFile output) {
   const std::optional<control::JointRun> run = find_run(program);
   if (!run) return kRunFailed;
+  const control::JointRun part = cut_run(*run, script_options.first_row, program.plan.settings.tick);
   const control::UrServoScript script =
-      control::format_servo_urscript(*run, program.for_robot(program.plan, options), options.script);
+      control::format_servo_urscript(part, program.for_robot(program.plan, options, true), script_options);
   write_file(std::move(output), script.text);
   std::fprintf(stderr, "%s: %zu knots, %.0f kB; %.1f s and waits for the vacuum; %.1f s simulated\n",
                options.output.c_str(), script.knots, static_cast<double>(script.text.size()) / 1e3,
@@ -201,16 +234,59 @@ int write_targets(const ExportOptions& options, const LoadedProgram& program, Ou
   return kSuccess;
 }
 
+/// The first row of the box with which the program is to begin.
+std::size_t find_first_row(const ExportOptions& options, const LoadedProgram& program) {
+  if (options.from_box.empty()) return 0;
+  const std::vector<motion::Waypoint>& rows = program.plan.program.waypoints;
+  std::vector<std::string> picked;
+  for (const model::Item& item : program.simulation.sequence().items) {
+    const auto is_its = [&](const motion::Waypoint& row) {
+      const bool is_before =
+          row.motion_class == motion::MotionClass::PrePick || row.motion_class == motion::MotionClass::Pick;
+      return is_before && motion::fit_of(row, item.parcel) > 0;
+    };
+    const auto first = std::ranges::find_if(rows, is_its);
+    if (first == rows.end()) continue;
+    if (item.parcel == options.from_box) return static_cast<std::size_t>(first - rows.begin());
+    picked.push_back(item.parcel);
+  }
+  const std::string_view nearest = find_nearest(options.from_box, picked);
+  throw InputError("command line", "--from-box", "'" + options.from_box + "'",
+                   fmt::format("a box that the program picks: {}{}", fmt::join(picked, ", "),
+                               nearest.empty() ? "" : fmt::format("; nearest is '{}'", nearest)));
+}
+
+/// How the cell is wired, with what the command line says otherwise.
+control::UrScriptOptions script_options(const ExportOptions& options, const LoadedProgram& program) {
+  control::UrScriptOptions script = options.script;
+  const model::Scenario& scenario = program.simulation.scenario();
+  script.io = model::robot_io(scenario);
+  const auto standard = [](int number) { return model::DigitalIo{model::DigitalKind::Standard, number, false}; };
+  if (options.vacuum_output) script.io.vacuum = standard(*options.vacuum_output);
+  if (options.blow_off_output) script.io.blow_off = standard(*options.blow_off_output);
+  if (options.vacuum_input) script.io.vacuum_reached = standard(*options.vacuum_input);
+  if (options.part_input) script.io.part_present = standard(*options.part_input);
+  if (script.io.blow_off && script.io.vacuum.bit() == script.io.blow_off->bit()) {
+    throw InputError("command line", "--blow-off-output", fmt::format("output {}", script.io.vacuum.number),
+                     "another output than --vacuum-output");
+  }
+  if (script.io.vacuum_reached && script.io.part_present &&
+      script.io.vacuum_reached->bit() == script.io.part_present->bit()) {
+    throw InputError("command line", "--part-input", fmt::format("input {}", script.io.part_present->number),
+                     "another input than --vacuum-input");
+  }
+  script.pressure_reached = cup::kEstablishedVacuum * scenario.cup.vacuum.pressure_gauge_hold;
+  script.first_row = find_first_row(options, program);
+  return script;
+}
+
 }  // namespace
 
 int write_urscript(const ExportOptions& options, OutputFile output) {
-  if (options.script.vacuum_output == options.script.blow_off_output) {
-    throw InputError("command line", "--blow-off-output", std::to_string(options.script.blow_off_output),
-                     "another output than --vacuum-output");
-  }
   const LoadedProgram program = load(options);
-  return program.is_fast() ? write_targets(options, program, std::move(output))
-                           : write_moves(options, program, std::move(output));
+  const control::UrScriptOptions script = script_options(options, program);
+  return program.is_fast() && !script.is_dry ? write_targets(options, script, program, std::move(output))
+                                             : write_moves(options, script, program, std::move(output));
 }
 
 int write_ros_trajectory(const ExportOptions& options, OutputFile output) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 #include "snug/control/internal/program_text.hpp"
 #include "snug/core/check.hpp"
@@ -33,6 +34,110 @@ void put_count(std::string& bytes, std::size_t count) {
   put(bytes, &value, sizeof value);
 }
 
+constexpr double kFollows = 2e-4;               // rad (m), that a point may be passed by, of each joint
+constexpr double kAccelerationMargin = 0.02;    // of the largest of the run
+constexpr double kAccelerationRounding = 0.05;  // rad/s^2 (m/s^2)
+constexpr int kLooks = 8;                       // between two points, beside those of the run
+
+/// Where the joints are to be, how fast, and how they gain speed.
+struct TrajectoryPoint {
+  double time = 0.0;  ///< s
+  robot::JointVector q, qd, qdd;
+};
+
+/// What joints do between two points that a controller interpolates by quintic polynomials.
+struct QuinticState {
+  robot::JointVector q, qd, qdd;
+};
+
+QuinticState interpolate_quintic(const TrajectoryPoint& a, const TrajectoryPoint& b, double time) {
+  const double T = b.time - a.time, t = time - a.time;
+  const robot::JointVector d = b.q - a.q - T * a.qd - 0.5 * T * T * a.qdd;
+  const robot::JointVector v = T * (b.qd - a.qd - T * a.qdd), w = T * T * (b.qdd - a.qdd);
+  const robot::JointVector c3 = (10.0 * d - 4.0 * v + 0.5 * w) / (T * T * T);
+  const robot::JointVector c4 = (-15.0 * d + 7.0 * v - w) / (T * T * T * T);
+  const robot::JointVector c5 = (6.0 * d - 3.0 * v + 0.5 * w) / (T * T * T * T * T);
+  QuinticState state;
+  state.q = a.q + t * (a.qd + t * (0.5 * a.qdd + t * (c3 + t * (c4 + t * c5))));
+  state.qd = a.qd + t * (a.qdd + t * (3.0 * c3 + t * (4.0 * c4 + 5.0 * t * c5)));
+  state.qdd = a.qdd + t * (6.0 * c3 + t * (12.0 * c4 + 20.0 * t * c5));
+  return state;
+}
+
+/// Of all states that follow each other: positions and speeds as they are, accelerations between those before and
+/// after.
+std::vector<TrajectoryPoint> all_points(const JointRun& run, double tick) {
+  std::vector<TrajectoryPoint> points;
+  const robot::JointVector rest = robot::JointVector::Zero(run.samples.front().before.q.size());
+  for (const JointSample& sample : run.samples)
+    points.push_back({sample.time, sample.before.q, sample.before.qd, rest});
+  const JointState& end = run.samples.back().after;
+  SNUG_CHECK(end.qd.norm() < 1e-9, "a run ends at rest");
+  points.push_back({run.samples.back().time + tick, end.q, rest, rest});
+  for (std::size_t i = 1; i + 1 < points.size(); ++i)
+    points[i].qdd = (points[i + 1].qd - points[i - 1].qd) / (points[i + 1].time - points[i - 1].time);
+  return points;
+}
+
+/// How far a stretch between two points is beyond its limits; at most 0: within.
+double excess_of(const std::vector<TrajectoryPoint>& all, std::size_t from, std::size_t to, const robot::ArmModel& arm,
+                 double most_acceleration) {
+  double excess = -1.0;
+  for (std::size_t i = from; i < to; ++i) {
+    for (int look = 0; look < kLooks; ++look) {
+      const double time = all[i].time + (all[i + 1].time - all[i].time) * look / kLooks;
+      const QuinticState state = interpolate_quintic(all[from], all[to], time);
+      if (look == 0) excess = std::max(excess, (state.q - all[i].q).cwiseAbs().maxCoeff() / kFollows - 1.0);
+      excess = std::max(excess, state.qdd.cwiseAbs().maxCoeff() / most_acceleration - 1.0);
+      for (Eigen::Index j = 0; j < state.qd.size(); ++j)
+        excess = std::max(excess, std::abs(state.qd[j]) / arm.joints[static_cast<std::size_t>(j)].max_speed - 1.0);
+    }
+  }
+  return excess;
+}
+
+/// The first of the states, the last, and between them as few as the limits allow, none farther from the next than
+/// `stride`. Where no choice is within all limits, the one that is beyond them least.
+std::vector<TrajectoryPoint> find_points(const JointRun& run, const robot::ArmModel& arm, double tick,
+                                         std::size_t stride) {
+  if (run.samples.empty()) return {};
+  const std::vector<TrajectoryPoint> all = all_points(run, tick);
+  double most = 0.0;
+  for (const JointSample& sample : run.samples)
+    most = std::max(most, (sample.after.qd - sample.before.qd).cwiseAbs().maxCoeff() / tick);
+  most = most * (1.0 + kAccelerationMargin) + kAccelerationRounding;
+  std::vector<TrajectoryPoint> points = {all.front()};
+  for (std::size_t from = 0; from + 1 < all.size();) {
+    std::size_t best = from + 1;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t to = std::min(all.size() - 1, from + stride); to > from && least > 0.0; --to) {
+      const double excess = excess_of(all, from, to, arm, most);
+      if (excess >= least) continue;
+      least = excess;
+      best = to;
+    }
+    from = best;
+    points.push_back(all[from]);
+  }
+  return points;
+}
+
+/// What a controller makes of the points, said in numbers.
+std::string format_extremes(const std::vector<TrajectoryPoint>& points, const robot::ArmModel& arm) {
+  double speed = 0.0, acceleration = 0.0;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    for (int look = 0; look <= kLooks; ++look) {
+      const double time = points[i].time + (points[i + 1].time - points[i].time) * look / kLooks;
+      const QuinticState state = interpolate_quintic(points[i], points[i + 1], time);
+      acceleration = std::max(acceleration, state.qdd.cwiseAbs().maxCoeff());
+      for (Eigen::Index j = 0; j < state.qd.size(); ++j)
+        speed = std::max(speed, std::abs(state.qd[j]) / arm.joints[static_cast<std::size_t>(j)].max_speed);
+    }
+  }
+  return fmt::format("# by quintic interpolation: at most {:.1f} % of a joint's speed limit, {:.2f} rad/s^2\n",
+                     100.0 * speed, acceleration);
+}
+
 LogColumn& add(std::vector<LogColumn>& log, const std::string& name, std::size_t samples) {
   log.push_back({name, {}, {}});
   log.back().numbers.reserve(samples);
@@ -44,37 +149,30 @@ LogColumn& add(std::vector<LogColumn>& log, const std::string& name, std::size_t
 std::string format_ros_trajectory(const JointRun& run, const RobotProgram& program, double period) {
   const double tick = program.plan.settings.tick;
   const auto stride = static_cast<std::size_t>(std::max(1.0, std::round(period / tick)));
+  const std::vector<TrajectoryPoint> points = find_points(run, program.arm, tick, stride);
   std::string text = format_header(program, "rad, rad/s, rad/s^2, s; payloads in kg and m");
+  text += format_extremes(points, program.arm);
   text += "# trajectory_msgs/JointTrajectory\nheader:\n  stamp: {sec: 0, nanosec: 0}\n  frame_id: ''\njoint_names:\n";
   for (const robot::Joint& joint : program.arm.joints) text += "  - " + joint.name + "\n";
-  text += "points:\n";
-  const auto point = [&](const robot::JointVector& q, const robot::JointVector& qd, const robot::JointVector& qdd,
-                         double time) {
-    text += fmt::format("  - positions: {}\n    velocities: {}\n    accelerations: {}\n    time_from_start: {}\n",
-                        format_list(q), format_list(qd), format_list(qdd), time_from_start(time));
-  };
-  for (std::size_t i = 0; i < run.samples.size(); i += stride) {
-    const JointState& joints = run.samples[i].before;
-    point(joints.q, joints.qd, joints.qdd, run.samples[i].time);
+  text += points.empty() ? "points: []\n" : "points:\n";
+  for (const TrajectoryPoint& point : points) {
+    text +=
+        fmt::format("  - positions: {}\n    velocities: {}\n    accelerations: {}\n    time_from_start: {}\n",
+                    format_list(point.q), format_list(point.qd), format_list(point.qdd), time_from_start(point.time));
   }
-  if (!run.samples.empty()) {
-    const JointState& end = run.samples.back().after;
-    SNUG_CHECK(end.qd.norm() < 1e-9, "a run ends at rest");
-    const robot::JointVector rest = robot::JointVector::Zero(end.q.size());
-    point(end.q, rest, rest, run.samples.back().time + tick);
-  }
-  text += "---\n# what the outputs do, and from which time_from_start of the trajectory on\nio:\n";
+  std::string switches;
   for (std::size_t i = 0; i < run.samples.size(); ++i) {
     const JointSample& sample = run.samples[i];
     const bool is_same = i > 0 && sample.io.vacuum == run.samples[i - 1].io.vacuum &&
                          sample.io.blow_off == run.samples[i - 1].io.blow_off;
     if (is_same || sample.row < 0) continue;
-    text +=
+    switches +=
         fmt::format("  - {{time_from_start: {}, vacuum: {}, blow_off: {}, row: {}, waypoint: \"{}\"}}\n",
                     time_from_start(sample.time), sample.io.vacuum, sample.io.blow_off, sample.row + 1,
                     quotable(motion::name_of(program.plan.program.waypoints[static_cast<std::size_t>(sample.row)])));
   }
-  return text;
+  text += "# no part of the message: what the outputs do, and from which time_from_start of the trajectory on\n";
+  return text + (switches.empty() ? "io: []\n" : "io:\n" + switches);
 }
 
 std::vector<LogColumn> make_log(const JointRun& run, const robot::ArmModel& arm, const Vector3& gravity_W) {

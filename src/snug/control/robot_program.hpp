@@ -12,8 +12,9 @@ namespace snug::control {
 
 /// What the cup holds on the way to a row, fixed to E.
 struct CarriedLoad {
-  double mass = 0.0;                ///< kg
-  Vector3 com_E = Vector3::Zero();  ///< m
+  double mass = 0.0;                    ///< kg
+  Vector3 com_E = Vector3::Zero();      ///< m
+  Matrix3 inertia_E = Matrix3::Zero();  ///< kg m^2, about its centre of mass, along the axes of E
   bool operator==(const CarriedLoad&) const = default;
 };
 
@@ -27,6 +28,7 @@ struct RobotProgram {
   std::vector<std::string> notes = {};
   /// s, of the program as it was simulated, whose limits `plan` may have been fitted to; 0: that of `plan`.
   double simulated_duration = 0.0;
+  std::string flange = "tool0";  ///< link on which the tool is mounted: payloads and the TCP are said in its frame
 };
 
 }  // namespace snug::control

@@ -20,8 +20,9 @@
 namespace snug::control {
 namespace {
 
-using internal::check_is_ur, internal::format_header, internal::format_outputs, internal::format_payload,
-    internal::format_start, internal::format_wait, internal::kJointAcceleration, internal::wait_function;
+using internal::check_is_ur, internal::format_header, internal::format_outputs, internal::format_part_wait,
+    internal::format_script_payload, internal::format_start, internal::format_wait, internal::kJointAcceleration,
+    internal::wait_function;
 
 constexpr int kJoints = 6;  // of a UR
 // servoj is asked for the least lag of the script manual's ranges, lookahead_time 0.03 to 0.2 s and gain 100 to 2000:
@@ -165,6 +166,7 @@ class ServoWriter {
 
   /// Nothing of a run without samples.
   UrServoScript write() {
+    if (!run_.samples.empty()) wait_for_part(static_cast<std::size_t>(std::max(0, run_.samples.front().row)));
     for (std::size_t i = 0; i < run_.samples.size(); ++i) {
       if (i == 0 || run_.samples[i].row != run_.samples[i - 1].row) begin_row(i);
     }
@@ -194,10 +196,21 @@ class ServoWriter {
     script_.text += format_outputs(io_, io, options_);
     if (stop) script_.text += format_wait(waypoint);
     if (changes_vacuum) {
-      script_.text += "  " + format_payload(program_, program_.loads[static_cast<std::size_t>(row)]);
+      script_.text += format_script_payload(program_, program_.loads[static_cast<std::size_t>(row)], options_);
     }
+    if (stop && !io.vacuum) wait_for_part(static_cast<std::size_t>(row));
     if (stop) at_ = departure;
     io_ = io;
+  }
+
+  /// The box that is picked at the aligner before the vacuum comes on again, from that row on.
+  void wait_for_part(std::size_t row) {
+    const std::vector<motion::Waypoint>& rows = program_.plan.program.waypoints;
+    for (std::size_t i = row; i < rows.size() && !rows[i].io.vacuum; ++i) {
+      if (rows[i].motion_class != motion::MotionClass::Pick) continue;
+      script_.text += format_part_wait(rows[i], options_);
+      return;
+    }
   }
 
   void follow(std::size_t end) {
@@ -257,6 +270,37 @@ UrServoScript format_servo_urscript(const JointRun& run, const RobotProgram& pro
   text += wait_function(options) + follow_functions(q_start) + format_start(program, q_start, options);
   script.text = text + script.text + "end\n";
   return script;
+}
+
+JointRun begin_at(const JointRun& run, std::size_t sample, std::size_t ramp, double tick) {
+  SNUG_CHECK(ramp > 0 && sample + ramp < run.samples.size(), "samples to come up to speed on");
+  JointRun begun;
+  begun.is_complete = run.is_complete;
+  begun.stuck_row = run.stuck_row;
+  const double rise = 2.0 * tick * static_cast<double>(ramp);  // s
+  // Along the way with the clock t^2 / (2 rise): after `rise` it runs as fast as time.
+  const auto state_at = [&](std::size_t step) {
+    const double t = tick * static_cast<double>(step), along = t * t / (2.0 * rise), pace = t / rise;
+    const std::size_t i = std::min(sample + ramp - 1, sample + static_cast<std::size_t>(along / tick));
+    const JointState &from = run.samples[i].before, &to = run.samples[i + 1].before;
+    const double u = std::clamp(along / tick - static_cast<double>(i - sample), 0.0, 1.0);
+    const TimedJoints a{0.0, from.q, from.qd}, b{tick, to.q, to.qd};
+    JointState state;
+    state.q = interpolate(a, b, u * tick);
+    state.qd = pace * ((1.0 - u) * from.qd + u * to.qd);
+    state.qdd = from.qd / rise;
+    return state;
+  };
+  for (std::size_t step = 0; step < 2 * ramp; ++step) {
+    JointSample one = run.samples[sample];
+    one.before = state_at(step);
+    one.after = state_at(step + 1);
+    begun.samples.push_back(one);
+  }
+  begun.samples.insert(begun.samples.end(), run.samples.begin() + static_cast<std::ptrdiff_t>(sample + ramp),
+                       run.samples.end());
+  for (std::size_t i = 0; i < begun.samples.size(); ++i) begun.samples[i].time = tick * static_cast<double>(i);
+  return begun;
 }
 
 }  // namespace snug::control

@@ -38,31 +38,42 @@ std::string quotable(const std::string& text) {
   return kept;
 }
 
-std::string format_payload(const RobotProgram& program, const std::optional<CarriedLoad>& load) {
-  const int tool0 = robot::find_link(program.arm, "tool0");
-  const SpatialInertia gripper = robot::distal_inertia(program.arm, tool0);
-  double mass = gripper.mass;
-  Vector3 moment = gripper.mass * gripper.com;
-  if (load) {
-    const Pose X_TE = program.arm.links[static_cast<std::size_t>(tool0)].X_SL.inverse() * program.arm.X_SE;
-    mass += load->mass;
-    moment += load->mass * (X_TE * load->com_E);
+SpatialInertia payload_of(const RobotProgram& program, const std::optional<CarriedLoad>& load) {
+  const int flange = robot::find_link(program.arm, program.flange);
+  if (flange < 0) {
+    throw InputError(program.arm.name, "links", "no link '" + program.flange + "'",
+                     "the link on which the tool is mounted: `flange_frame` of the scenario's robot");
   }
-  const Vector3 com = mass > 0.0 ? Vector3(moment / mass) : Vector3(Vector3::Zero());
-  return fmt::format("set_payload({:.4f}, [{:.5f}, {:.5f}, {:.5f}])\n", mass, com.x(), com.y(), com.z());
+  const SpatialInertia gripper = robot::distal_inertia(program.arm, flange);
+  if (!load) return gripper;
+  const Pose X_FE = program.arm.links[static_cast<std::size_t>(flange)].X_SL.inverse() * program.arm.X_SE;
+  const SpatialInertia box{load->mass, X_FE * load->com_E, X_FE.R * load->inertia_E * X_FE.R.transpose()};
+  SpatialInertia both{gripper.mass + box.mass, Vector3::Zero(), Matrix3::Zero()};
+  if (both.mass > 0.0) both.com = (gripper.mass * gripper.com + box.mass * box.com) / both.mass;
+  for (const SpatialInertia& one : {gripper, box}) {
+    const Vector3 r = one.com - both.com;
+    both.inertia += one.inertia + one.mass * (r.squaredNorm() * Matrix3::Identity() - r * r.transpose());
+  }
+  return both;
+}
+
+std::string format_payload(const RobotProgram& program, const std::optional<CarriedLoad>& load) {
+  const SpatialInertia payload = payload_of(program, load);
+  const Vector3 com = payload.mass > 0.0 ? payload.com : Vector3(Vector3::Zero());
+  return fmt::format("set_payload({:.4f}, [{:.5f}, {:.5f}, {:.5f}])\n", payload.mass, com.x(), com.y(), com.z());
 }
 
 std::string format_tcp(const RobotProgram& program) {
   const Pose X_WE = robot::forward_tool(program.arm, robot::JointVector::Zero(program.arm.joint_count()));
-  return format_pose(pose_at_zero(program.arm, "tool0").inverse() * X_WE);
+  return format_pose(pose_at_zero(program.arm, program.flange).inverse() * X_WE);
 }
 
 std::string format_header(const RobotProgram& program, const std::string& units) {
   std::string text;
   for (const std::string& note : program.notes) text += "# " + printable(note, kLongestNote) + "\n";
   text += "# units: " + units + "\n";
-  text += fmt::format("# tool: {} (TCP in tool0: position, rotation vector)\n", format_tcp(program));
-  text += "# payload table, gripper and box, centre of mass in tool0:\n";
+  text += fmt::format("# tool: {} (TCP in {}: position, rotation vector)\n", format_tcp(program), program.flange);
+  text += "# payload table, gripper and box, centre of mass in " + program.flange + ":\n";
   const auto line = [&](const std::string& rows, const std::optional<CarriedLoad>& load) {
     std::string words = format_payload(program, load);
     words.pop_back();

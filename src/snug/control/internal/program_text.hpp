@@ -18,9 +18,11 @@ namespace snug::control::internal {
 /// Text that can stand between the quotes of a script or of YAML.
 [[nodiscard]] std::string quotable(const std::string& text);
 
-/// A line: set_payload of the gripper and what it carries: kg, and the centre of mass in tool0, m.
+/// Gripper and what it carries, in the frame of the flange. Throws InputError where the arm has no such link.
+[[nodiscard]] SpatialInertia payload_of(const RobotProgram& program, const std::optional<CarriedLoad>& load);
+/// A line: set_payload of the gripper and what it carries: kg, and the centre of mass in the flange's frame, m.
 [[nodiscard]] std::string format_payload(const RobotProgram& program, const std::optional<CarriedLoad>& load);
-/// Pose of the cup's TCP in tool0.
+/// Pose of the cup's TCP in the flange's frame.
 [[nodiscard]] std::string format_tcp(const RobotProgram& program);
 /// Comments: what it was made of, units, tool, and the loads that it carries with the rows they are carried on the way
 /// to.

@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <sstream>
 
 #include "exported.hpp"
+#include "snug/core/input_error.hpp"
 
 namespace snug::control {
 namespace {
@@ -56,8 +58,100 @@ TEST(RosTrajectory, HasStrictlyGrowingTimesAndAllJoints) {
   }
   EXPECT_EQ(tools, 1);
   EXPECT_EQ(names, 6);
-  EXPECT_EQ(points, static_cast<int>((exported.run.samples.size() + 4) / 5) + 1);
+  EXPECT_GE(points, static_cast<int>((exported.run.samples.size() + 4) / 5) + 1);
+  EXPECT_LE(points, static_cast<int>(exported.run.samples.size()) + 1);
   EXPECT_NEAR(last, exported.run.samples.back().time + 0.008, 1e-8);
+}
+
+/// Points of a trajectory, read back.
+struct ReadPoint {
+  double time = 0.0;
+  std::vector<double> q, qd, qdd;
+};
+
+std::vector<ReadPoint> points_of(const std::string& text) {
+  std::vector<ReadPoint> points;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const auto list = [&] {
+      std::vector<double> values;
+      std::istringstream words(line.substr(line.find('[') + 1));
+      for (double value; words >> value; words.ignore(1)) values.push_back(value);
+      return values;
+    };
+    long long seconds = 0, nanoseconds = 0;
+    if (line.find("- positions:") != std::string::npos) points.push_back({0.0, list(), {}, {}});
+    if (line.find("    velocities:") == 0) points.back().qd = list();
+    if (line.find("    accelerations:") == 0) points.back().qdd = list();
+    if (std::sscanf(line.c_str(), "    time_from_start: {sec: %lld, nanosec: %lld}", &seconds, &nanoseconds) == 2)
+      points.back().time = static_cast<double>(seconds) + 1e-9 * static_cast<double>(nanoseconds);
+  }
+  return points;
+}
+
+/// Of the quintic polynomial with position, speed and acceleration at 0 and T, by the textbook's six conditions.
+std::array<double, 3> quintic(const ReadPoint& a, const ReadPoint& b, std::size_t j, double t) {
+  const double T = b.time - a.time;
+  Eigen::Matrix<double, 6, 6> A;
+  Eigen::Matrix<double, 6, 1> y;
+  const auto rows = [](double x) {
+    Eigen::Matrix<double, 3, 6> m;
+    m << 1, x, x * x, x * x * x, std::pow(x, 4), std::pow(x, 5),    //
+        0, 1, 2 * x, 3 * x * x, 4 * x * x * x, 5 * std::pow(x, 4),  //
+        0, 0, 2, 6 * x, 12 * x * x, 20 * x * x * x;
+    return m;
+  };
+  A << rows(0.0), rows(T);
+  y << a.q[j], a.qd[j], a.qdd[j], b.q[j], b.qd[j], b.qdd[j];
+  const Eigen::Matrix<double, 6, 1> c = A.fullPivLu().solve(y);
+  const Eigen::Vector3d found = rows(t) * c;
+  return {found[0], found[1], found[2]};
+}
+
+TEST(RosTrajectory, StaysWithinTheLimitsOfTheRunByQuinticInterpolation) {
+  for (const motion::Tracking& tracking :
+       {motion::Tracking(motion::LaggedTracking{}), motion::Tracking(motion::FastTracking{})}) {
+    const Exported exported{tracking};
+    const std::vector<JointSample>& samples = exported.run.samples;
+    double most = 0.0;
+    for (const JointSample& one : samples)
+      most = std::max(most, (one.after.qd - one.before.qd).cwiseAbs().maxCoeff() / 0.008);
+    const std::vector<ReadPoint> points = points_of(format_ros_trajectory(exported.run, exported.for_robot(), 0.08));
+    ASSERT_GT(points.size(), samples.size() / 10);
+    std::size_t sample = 0;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+      EXPECT_LE(points[i + 1].time - points[i].time, 0.08 + 1e-9);
+      for (int look = 0; look < 10; ++look) {
+        for (std::size_t j = 0; j < 6; ++j) {
+          const auto [q, qd, qdd] =
+              quintic(points[i], points[i + 1], j, 0.1 * look * (points[i + 1].time - points[i].time));
+          EXPECT_LT(std::abs(qdd), 1.02 * most + 0.1) << points[i].time << " joint " << j;
+          EXPECT_LT(std::abs(qd), exported.controller.arm().joints[j].max_speed);
+          (void)q;
+        }
+      }
+      for (; sample < samples.size() && samples[sample].time < points[i + 1].time - 1e-9; ++sample) {
+        for (std::size_t j = 0; j < 6; ++j) {
+          const auto [q, qd, qdd] = quintic(points[i], points[i + 1], j, samples[sample].time - points[i].time);
+          EXPECT_NEAR(q, samples[sample].before.q[static_cast<Eigen::Index>(j)], 2.1e-4);
+        }
+      }
+    }
+  }
+}
+
+TEST(RosTrajectory, IsOneDocumentOfAnyArm) {
+  const Exported exported;
+  robot::ArmModel arm = exported.controller.arm();
+  arm.links[static_cast<std::size_t>(robot::find_link(arm, "tool0"))].name = "mounting_plate";
+  RobotProgram program{exported.plan, arm, test::start_joints(exported.controller), exported.for_robot().loads};
+  EXPECT_THROW((void)format_ros_trajectory(exported.run, program, 0.04), InputError);
+  program.flange = "mounting_plate";
+  const std::string text = format_ros_trajectory(exported.run, program, 0.04);
+  EXPECT_NE(text.find("# tool: p[0.000000, 0.000000, 0.335000,"), std::string::npos);
+  EXPECT_NE(text.find("(TCP in mounting_plate:"), std::string::npos);
+  EXPECT_EQ(text.find("\n---"), std::string::npos);
+  EXPECT_NE(text.find("\nio:\n"), std::string::npos);
 }
 
 TEST(Log, IsTheSameInBothForms) {

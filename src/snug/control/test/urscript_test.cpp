@@ -21,10 +21,25 @@ namespace {
 
 using test::Exported;
 
+UrScriptOptions wired_elsewhere() {
+  UrScriptOptions options;
+  options.io.vacuum.number = 3;
+  options.io.blow_off->number = 4;
+  options.io.vacuum_reached->number = 5;
+  return options;
+}
+
+/// How often the part stands in the text.
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
 // What a script does when it runs: tests/urscript_test.py.
 TEST(UrScript, MovesTheToolInTheControllersBaseFrame) {
   const Exported exported;
-  const UrScript script = format_urscript(exported.for_robot(), {3, 4, 5, 2.0});
+  const UrScript script = format_urscript(exported.for_robot(), wired_elsewhere());
   const std::string& text = script.text;
   // W is the controller's base in this cell, so that the waypoint's own numbers appear.
   const Vector3 p = exported.plan.program.waypoints[1].X_WE.p;
@@ -98,6 +113,83 @@ TEST(UrScript, TellsTheControllerWhatTheGripperCarries) {
   // E is turned by half a turn about z against tool0, 335 mm before it.
   const Vector3 moment = gripper.mass * gripper.com + 2.0 * Vector3(-0.01, 0.0, 0.335 + 0.1);
   EXPECT_LT((com - moment / (gripper.mass + 2.0)).norm(), 2e-5);
+}
+
+TEST(UrScript, SwitchesAndReadsAsTheCellIsWired) {
+  const Exported exported;
+  UrScriptOptions options;
+  options.io.vacuum = {model::DigitalKind::Tool, 1, true};
+  options.io.blow_off = std::nullopt;
+  options.io.vacuum_reached = model::DigitalIo{model::DigitalKind::Configurable, 2, true};
+  options.io.part_present = model::DigitalIo{model::DigitalKind::Standard, 6, false};
+  options.io.vacuum_gauge = model::GaugeIo{model::AnalogKind::Standard, 1, 5.0, 1.0, -1e5};
+  const std::string text = format_urscript(exported.for_robot(), options).text;
+  EXPECT_LT(text.find("set_tool_digital_out(1, True)"), text.find("movej(")) << "low is on: off at first";
+  EXPECT_NE(text.find("set_tool_digital_out(1, False)\n  snug_wait_for_vacuum(True"), std::string::npos) << text;
+  EXPECT_EQ(count_of(text, "_digital_out("), 2U) << "no blow-off is wired";
+  EXPECT_NE(text.find("while (get_configurable_digital_in(2) == False) != is_wanted:"), std::string::npos);
+  EXPECT_NE(text.find("while get_standard_analog_in(1) < 4.92:"), std::string::npos) << "2 kPa of 100 on 4 V down";
+  EXPECT_NE(text.find("while get_standard_digital_in(6) == False:"), std::string::npos);
+  const std::size_t wait = text.find("  snug_wait_for_part(\"Box013\")\n  movel(");
+  EXPECT_NE(wait, std::string::npos) << "right before the tool goes down to the box";
+  options.io.part_present = std::nullopt;
+  options.io.vacuum_reached = std::nullopt;
+  const std::string bare = format_urscript(exported.for_robot(), options).text;
+  EXPECT_EQ(count_of(bare, "snug_wait_for_part"), 0U);
+  EXPECT_NE(bare.find("while (get_standard_analog_in(1) < 3.8) != is_wanted:"), std::string::npos) << bare;
+  options.io.vacuum_gauge = std::nullopt;
+  EXPECT_THROW((void)format_urscript(exported.for_robot(), options), InputError);
+}
+
+TEST(UrScript, TellsTheInertiaOfGripperAndBoxWhereItIsAskedTo) {
+  Exported exported;
+  RobotProgram program = exported.for_robot();
+  const Matrix3 inertia = Vector3(0.01, 0.02, 0.03).asDiagonal();
+  program.loads[2] = program.loads[3] = CarriedLoad{2.0, Vector3(0.0, 0.0, 0.1), inertia};
+  UrScriptOptions options;
+  options.has_inertia = true;
+  const std::string text = format_urscript(program, options).text;
+  const std::size_t at = text.rfind("set_target_payload(");
+  ASSERT_NE(at, std::string::npos) << text;
+  double mass = 0.0, i[6], over = 0.0;
+  Vector3 com;
+  ASSERT_EQ(
+      std::sscanf(text.c_str() + at, "set_target_payload(%lf, [%lf, %lf, %lf], [%lf, %lf, %lf, %lf, %lf, %lf], %lf)",
+                  &mass, &com.x(), &com.y(), &com.z(), &i[0], &i[1], &i[2], &i[3], &i[4], &i[5], &over),
+      11);
+  // Two bodies, the box 0.435 m before tool0, turned by half a turn about z: moments about x and y grow with the
+  // distances to the common centre.
+  const SpatialInertia gripper = robot::distal_inertia(program.arm, robot::find_link(program.arm, "tool0"));
+  const double reduced = gripper.mass * 2.0 / (gripper.mass + 2.0);
+  const Vector3 r = Vector3(0.0, 0.0, 0.435) - gripper.com;
+  EXPECT_NEAR(i[0], gripper.inertia(0, 0) + 0.01 + reduced * (r.y() * r.y() + r.z() * r.z()), 2e-6);
+  EXPECT_NEAR(i[1], gripper.inertia(1, 1) + 0.02 + reduced * (r.x() * r.x() + r.z() * r.z()), 2e-6);
+  EXPECT_NEAR(i[2], gripper.inertia(2, 2) + 0.03 + reduced * (r.x() * r.x() + r.y() * r.y()), 2e-6);
+  EXPECT_NEAR(over, 0.1, 1e-9);
+}
+
+TEST(UrScript, ADryRunSwitchesNothingAndStaysAboveEveryRow) {
+  const Exported exported;
+  UrScriptOptions options;
+  options.is_dry = true;
+  const UrScript dry = format_urscript(exported.for_robot(), options), wet = format_urscript(exported.for_robot(), {});
+  EXPECT_EQ(count_of(dry.text, "_digital_out("), 2U) << "both off at first";
+  EXPECT_EQ(count_of(dry.text, "snug_wait"), 0U);
+  const Vector3 p = exported.plan.program.waypoints[1].X_WE.p;
+  char expected[80];
+  std::snprintf(expected, sizeof expected, "movel(p[%.6f, %.6f, %.6f,", p.x(), p.y(), p.z() + 0.02);
+  EXPECT_NE(dry.text.find(expected), std::string::npos) << dry.text;
+  EXPECT_NE(dry.text.find("a=0.25000, v=0.15000"), std::string::npos) << "Box: 4 and 0.6";
+  EXPECT_EQ(dry.moves, wet.moves);
+}
+
+TEST(UrScript, BeginsWithARowThatIsAskedFor) {
+  const Exported exported;
+  UrScriptOptions options;
+  options.first_row = 2;
+  const UrScript script = format_urscript(exported.for_robot(), options);
+  EXPECT_EQ(script.text.find("# 1 PrePick013"), std::string::npos);
+  EXPECT_NE(script.text.find("# 3 PostPick013"), std::string::npos);
 }
 
 TEST(UrScript, IsRefusedForAnArmThatIsNoUr) {
@@ -282,6 +374,38 @@ TEST(ServoUrScript, SwitchesAtRestWhenTheJointsBrakeForIt) {
   const auto rest = std::find_if(lines.begin(), lines.end(), [](const Followed& line) { return line.rests; });
   EXPECT_LT(rest->at, output);
   EXPECT_NEAR(rest->to.time, 0.8, 1e-9);
+}
+
+TEST(ServoUrScript, WaitsForItsFirstBoxBeforeItMoves) {
+  const Exported exported{motion::FastTracking{}};
+  const std::string text = servo_script(exported).text;
+  const std::size_t wait = text.find("  snug_wait_for_part(\"Box013\")");
+  ASSERT_NE(wait, std::string::npos) << text;
+  EXPECT_LT(text.find("movej("), wait);
+  EXPECT_LT(wait, text.find("  snug_follow([", wait));
+  EXPECT_EQ(count_of(text, "snug_wait_for_part("), 2U) << "with its definition";
+}
+
+TEST(ServoUrScript, ARunThatIsBegunOnTheWayComesUpToItsSpeed) {
+  Exported exported;
+  const RobotProgram program = exported.for_robot();
+  const JointRun run = run_of(program, [](int) { return 1; });
+  const JointRun begun = begin_at(run, 20, 15, 0.008);
+  ASSERT_EQ(begun.samples.size(), run.samples.size() - 20 - 15 + 30);
+  EXPECT_EQ(begun.samples.front().before.q, run.samples[20].before.q);
+  EXPECT_EQ(begun.samples.front().before.qd.norm(), 0.0);
+  for (std::size_t i = 0; i + 1 < begun.samples.size(); ++i) {
+    const JointSample &one = begun.samples[i], &next = begun.samples[i + 1];
+    EXPECT_NEAR(one.time, 0.008 * static_cast<double>(i), 1e-12);
+    EXPECT_LT((one.after.q - next.before.q).norm(), 1e-12);
+    EXPECT_LT((one.after.qd - next.before.qd).norm(), 1e-9) << i;
+    // Positions are those that the speeds lead to.
+    const robot::JointVector mean = 0.5 * (one.before.qd + next.before.qd);
+    EXPECT_LT((next.before.q - one.before.q - 0.008 * mean).norm(), 2e-5) << i;
+    EXPECT_LT(((next.before.qd - one.before.qd) / 0.008).cwiseAbs().maxCoeff(), 2.0 + 0.32 / 0.24 + 0.5) << i;
+  }
+  const std::string text = format_servo_urscript(begun, program, {}).text;
+  EXPECT_EQ(count_of(text, "movej("), 2U) << "to the start, then to where it begins";
 }
 
 TEST(ServoUrScript, OfAnArmThatStandsHasOneKnot) {
