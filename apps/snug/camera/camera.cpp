@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "apps/snug/camera/live_view.hpp"
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/shipped.hpp"
 #include "apps/snug/common/choose_camera.hpp"
@@ -66,6 +67,28 @@ std::vector<std::string> side_files(const fs::path& output) {
   return {};
 }
 
+CameraView look_at_recording(const CameraOptions& options) {
+  record::RecordingReader reader(options.recording);
+  expect_recorded(reader, options.recording, options.time);
+  CameraView view;
+  view.scenario = options.scenario
+                      ? model::load_scenario(find_scenario(*options.scenario))
+                      : model::parse_scenario(reader.header().scenario_text, "scenario of " + options.recording);
+  record::Frame instant;
+  reader.read_frame(reader.find_frame(options.time.value_or(reader.times().back())), instant);
+  view.scene = camera::make_scene(reader.header(), instant, options.recording);
+  view.time = instant.time;
+  view.seed = reader.header().seed;
+  if (options.changes.any()) {
+    throw InputError("command line", "--items, --container, --pallet, --set", "of a recording",
+                     "--click: of a cell that is served so");
+  }
+  if (options.without_robot) {
+    throw InputError("command line", "--without-robot", "of a recording", "--click: of a cell that is served");
+  }
+  return view;
+}
+
 }  // namespace
 
 int run_camera(const CameraOptions& options) {
@@ -73,34 +96,29 @@ int run_camera(const CameraOptions& options) {
   const std::string ending = output.extension().string();
   if (ending != ".png" && ending != ".ply" && ending != ".h5")
     throw InputError("command line", "-o", options.output, "a name that ends in .png, .ply or .h5");
-  NamedFiles inputs = {{"the recording", options.recording}}, outputs = {{"-o", options.output}};
+  NamedFiles inputs = {{options.click ? "the scenario" : "the recording", options.recording}},
+             outputs = {{"-o", options.output}};
   add_file(inputs, "--scenario", options.scenario);
   const std::vector<std::string> sides = side_files(output);
   for (const std::string& path : sides) outputs.push_back({"beside -o", path});
   expect_distinct(inputs, outputs);
 
-  record::RecordingReader reader(options.recording);
-  expect_recorded(reader, options.recording, options.time);
-  const model::Scenario scenario =
-      options.scenario ? model::load_scenario(find_scenario(*options.scenario))
-                       : model::parse_scenario(reader.header().scenario_text, "scenario of " + options.recording);
-  model::CameraParams params = choose_camera(scenario, options.camera, options.scenario.value_or(options.recording));
+  const CameraView view = options.click ? look_at_served(options) : look_at_recording(options);
+  model::CameraParams params =
+      choose_camera(view.scenario, options.camera, options.scenario.value_or(options.recording));
   camera::CameraDraw draw;
   if (options.exact) {
     params.errors = model::make_camera("ideal").errors;
     params.p_CL = Vector3::Zero();
   } else {
-    draw = camera::draw_camera(params, options.seed.value_or(reader.header().seed));
+    draw = camera::draw_camera(params, options.seed.value_or(view.seed));
   }
   OutputFile file(output);
   std::vector<OutputFile> side;
   for (const std::string& path : sides) side.emplace_back(path);
 
-  record::Frame instant;
-  reader.read_frame(reader.find_frame(options.time.value_or(reader.times().back())), instant);
-  const camera::Scene scene = camera::make_scene(reader.header(), instant, options.recording);
-  const camera::RenderedFrame shot = camera::render(scene, params, draw, options.shot, options.threads);
-  const ordered_json truth = describe(shot, instant.time);
+  const camera::RenderedFrame shot = camera::render(view.scene, params, draw, options.shot, options.threads);
+  const ordered_json truth = describe(shot, view.time);
   if (ending == ".h5") {
     camera::write_h5(file, shot.frame, &shot.truth);
     file.publish();
@@ -117,7 +135,7 @@ int run_camera(const CameraOptions& options) {
     print(truth.dump(2) + "\n");
   else
     print(fmt::format("{}: {} points of {} pixels at {:.3f} s, {}\n", options.output, truth["points"].get<int>(),
-                      params.width * params.height, instant.time, params.name));
+                      params.width * params.height, view.time, params.name));
   return kSuccess;
 }
 

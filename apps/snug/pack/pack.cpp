@@ -181,6 +181,7 @@ int run_pack(const PackOptions& options) {
   }
   const bool is_served = options.plant != "simulated";
   refuse_options_of_a_robot(options);
+  if (!is_served) (void)make_frames(options, scenario);  // says that it cannot be
   PackFiles files(options, scenario);
   if (files.log) session.log = [&files](const session::SessionEvent& one) { files.log->write(one); };
   if (options.save_beliefs) session.save_beliefs = *options.save_beliefs;
@@ -221,6 +222,7 @@ int run_pack(const PackOptions& options) {
   if (failure.empty() && !rejected.empty()) {
     failure = fmt::format("the load is not as it has to be: {}", fmt::join(rejected, "; "));
   }
+  if (failure.empty() && result.stop_reason == session::StopReason::NoFrame) failure = result.stopped;
   if (failure.empty() && repeated.failed > 0) {
     failure = fmt::format("{} of {} repeated runs did not reach their end", repeated.failed, repeated.count);
   }

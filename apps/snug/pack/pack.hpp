@@ -7,6 +7,7 @@
 
 #include "apps/snug/command_line/scenario_options.hpp"
 #include "apps/snug/command_line/verb.hpp"
+#include "snug/camera/frame_source.hpp"
 #include "snug/study/trial.hpp"
 
 namespace snug::app {
@@ -36,9 +37,13 @@ struct PackOptions {
   std::optional<double> tempo;      ///< only with fast; absent: 1
   std::string future = "order";
   std::string perception = "exact";
-  std::vector<std::string> plant_set;  ///< "KEY=VALUE", of the plant's scenario alone
-  std::string fault;                   ///< "drop@3,noseal@5"
-  std::optional<std::string> robot;    ///< absent: the scenario's, where its file is there; "none"
+  std::optional<std::string> frames;         ///< folder or command, of perception frames
+  double frames_patience = 30.0;             ///< s, for the frame of a look
+  std::optional<std::string> frames_camera;  ///< file that says what camera they are of
+  std::optional<double> frames_unit;         ///< m
+  std::vector<std::string> plant_set;        ///< "KEY=VALUE", of the plant's scenario alone
+  std::string fault;                         ///< "drop@3,noseal@5"
+  std::optional<std::string> robot;          ///< absent: the scenario's, where its file is there; "none"
   std::optional<int> monte_carlo;
   std::optional<std::string> program, plan, record;
   std::optional<std::string> log;           ///< of events
@@ -70,6 +75,9 @@ void expect_options_of_a_served_plant(const PackOptions& options, const session:
                                         const session::SessionOptions& session,
                                         const simulated_plant::SimulatedPlantOptions& plant,
                                         const study::TrialProgress& progress, OutputFile* program);
+/// Where frames come from with --frames; empty without. Throws InputError where perception and source do not go
+/// together, and where there is no such source.
+[[nodiscard]] camera::FrameSource make_frames(const PackOptions& options, const model::Scenario& scenario);
 /// What the recording of a simulated plant says of how it was made.
 [[nodiscard]] simulated_plant::LiveRecordingOptions recording_of(const simulated_plant::SimulatedPlantOptions& plant,
                                                                  const std::string& agent, OutputFile& file);

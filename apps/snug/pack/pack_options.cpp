@@ -22,6 +22,7 @@ constexpr const char* kPackExamples = R"(Examples:
   snug pack scenarios/box-demonstrator.yaml --items scenarios/orders-example.csv --sequence kitchen
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant click://127.0.0.1:5555
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant ur://127.0.0.1 --observe tcp://127.0.0.1:5555
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant click://127.0.0.1:5555 --perception frames --frames "snug camera scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --sequence 1 --shot {look} -o {frame}.h5"
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --container 400x300x200
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --pallet 600x400x300 --program out.csv
   snug pack scenarios/box-demonstrator.yaml --sequence 2 --program out.csv --plan out.json --monte-carlo 10
@@ -52,8 +53,9 @@ void add_packing_options(CLI::App& verb, PackOptions& options) {
   verb.add_option("--perception", options.perception,
                   "what is seen of boxes: exact poses and sizes, noisy ones (2 mm, 20 mrad), none (dead-reckoning), or "
                   "what the "
-                  "scenario's camera over the container tells (docs/camera.md)")
-      ->check(one_of({"exact", "noisy", "dead-reckoning", "camera"}))
+                  "scenario's camera over the container tells, or frames of a camera that exists: --frames "
+                  "(docs/camera.md)")
+      ->check(one_of({"exact", "noisy", "dead-reckoning", "camera", "frames"}))
       ->type_name("HOW")
       ->capture_default_str();
   verb.add_option(
@@ -156,6 +158,21 @@ void add_pack(CLI::App& app, Action& action) {
       ->type_name("SECONDS")
       ->capture_default_str();
   add_packing_options(verb, *options);
+  verb.add_option(
+          "--frames", options->frames,
+          "of --perception frames: a folder in which a frame appears at each look, or a command that leaves one: "
+          "{frame} is its path without ending, {look} its number; no shell runs it (docs/camera.md)")
+      ->type_name("DIR|COMMAND");
+  verb.add_option("--frames-timeout", options->frames_patience, "how long a frame may take")
+      ->check(within(0.01, 1e5))
+      ->type_name("SECONDS")
+      ->capture_default_str();
+  verb.add_option("--frames-camera", options->frames_camera,
+                  "optics, unit, axes and pose of the camera that takes them, whatever the frames say: JSON or YAML")
+      ->type_name("FILE");
+  verb.add_option("--frames-unit", options->frames_unit, "metres of a step of grey, or of a coordinate")
+      ->check(within(1e-7, 1.0))
+      ->type_name("M");
   verb.add_option("--monte-carlo", options->monte_carlo,
                   "repeat the finished program N times, open loop, in cells drawn from the scenario's `uncertainty`")
       ->check(whole(1, kMostRuns))

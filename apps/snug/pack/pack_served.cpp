@@ -26,7 +26,7 @@ study::Trial run_served_trial(const PackOptions& options, const model::Scenario&
   const perception::Kind kind = perception::kind_of(options.perception);
   remote_plant::RemotePlant plant(scenario, options.sequence,
                                   {options.plant, options.patience, kind, options.plant_seed, session.simulation,
-                                   click::find_client_keys(options.keys)});
+                                   click::find_client_keys(options.keys), make_frames(options, scenario)});
   const study::Witness witness =
       watch_boxes(scenario, options.sequence,
                   {[&] { return plant.boxes(); }, [&](std::size_t item) { return plant.size_of(item); },

@@ -24,6 +24,8 @@ camera::FrameHints make_hints(const PerceiveOptions& options, const model::Scena
   hints.camera_is_given = options.use_scenario_camera || !options.intrinsics.empty();
   hints.depth_unit = options.depth_unit;
   hints.points_are_in_camera = options.points_in_camera;
+  hints.axes = camera::axes_of(options.axes, "command line");
+  if (options.camera_file) hints.camera_file = *options.camera_file;
   if (options.intrinsics.empty()) return hints;
   for (const double value : options.intrinsics)
     if (!(std::abs(value) < 1e6)) throw InputError("command line", "--intrinsics", fmt::format("{}", value), "pixels");
@@ -53,6 +55,7 @@ int run_perceive(const PerceiveOptions& options) {
                        {"--scenario", find_scenario(options.scenario)},
                        {"--expect", options.expect}},
              outputs;
+  add_file(inputs, "--camera-file", options.camera_file);
   add_file(outputs, "-o", options.output);
   expect_distinct(inputs, outputs);
   const model::Scenario scenario = model::load_scenario(find_scenario(options.scenario));

@@ -10,15 +10,17 @@
 namespace snug::app {
 
 struct PerceiveOptions {
-  std::string frame;  ///< .png, .ply or .h5
+  std::string frame;  ///< .png, .ply, .pcd or .h5
   std::string scenario;
-  std::string expect;                 ///< placements (YAML)
-  std::optional<std::string> camera;  ///< name; absent: the scenario's first
-  std::vector<double> intrinsics;     ///< px: fx, fy, cx, cy; empty: the file's or the scenario's
-  std::optional<double> depth_unit;   ///< m
-  bool points_in_camera = false;      ///< PLY
-  bool use_scenario_camera = false;   ///< also where the file has its own
-  double spread = 0.010;              ///< m
+  std::string expect;                      ///< placements (YAML)
+  std::optional<std::string> camera;       ///< name; absent: the scenario's first
+  std::vector<double> intrinsics;          ///< px: fx, fy, cx, cy; empty: the file's or the scenario's
+  std::optional<double> depth_unit;        ///< m
+  bool points_in_camera = false;           ///< PLY, PCD
+  std::string axes = "optical";            ///< of the camera's frame, of such points
+  std::optional<std::string> camera_file;  ///< what it says of the camera stands for the frame's and the scenario's
+  bool use_scenario_camera = false;        ///< also where the file has its own
+  double spread = 0.010;                   ///< m
   double spread_deg = 3.0;
   std::optional<std::string> output;  ///< JSON
   bool json = false;

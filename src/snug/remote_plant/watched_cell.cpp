@@ -35,14 +35,33 @@ WatchedCell::WatchedCell(model::Scenario scenario, const std::string& sequence, 
                    "a served cell with sequence " + sequence + ": " + trouble);
 }
 
+std::optional<Pose> WatchedCell::find_box(std::size_t item) const {
+  const auto found = link_.last().objects.find(names_[item]);
+  if (found == link_.last().objects.end() || !click::is_active(found->second, click::kPresentSensor)) return {};
+  return click::sensed_pose(found->second);
+}
+
+std::vector<WatchedCell::Box> WatchedCell::boxes() const {
+  std::vector<Box> boxes;
+  const model::Scenario& scenario = simulation_.scenario();
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    const auto X_WP = find_box(i);
+    if (!X_WP) continue;
+    const std::string& id = simulation_.sequence().items[i].parcel;
+    boxes.push_back({id, *X_WP, model::collision_size(scenario, *model::find_parcel(scenario, id))});
+    const click::SensorValue* size =
+        find_sensor(link_.last().objects.find(names_[i])->second, click::kSizeSensor, click::ValueType::Position);
+    if (size != nullptr && size->vector.allFinite() && size->vector.minCoeff() > 0.0) boxes.back().size = size->vector;
+  }
+  return boxes;
+}
+
 cell::CellState WatchedCell::state() const {
   cell::CellAnchor anchor;
   const robot::JointVector& q = link_.measured().q;
   anchor.q.assign(q.begin(), q.end());
   for (std::size_t i = 0; i < names_.size(); ++i) {
-    const auto found = link_.last().objects.find(names_[i]);
-    if (found == link_.last().objects.end() || !click::is_active(found->second, click::kPresentSensor)) continue;
-    if (const auto X_WP = click::sensed_pose(found->second)) anchor.boxes.push_back({static_cast<int>(i), *X_WP});
+    if (const auto X_WP = find_box(i)) anchor.boxes.push_back({static_cast<int>(i), *X_WP});
   }
   cell::CellState state = simulation_.take_up(anchor);
   const cell::CellWorld& world = simulation_.world();

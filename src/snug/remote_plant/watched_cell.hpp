@@ -26,7 +26,18 @@ class WatchedCell {
   /// The cell as it was then: where tool, links and boxes were, at rest.
   [[nodiscard]] cell::CellState state() const;
 
+  /// A box that is in the cell, as its sensors say.
+  struct Box {
+    std::string id;
+    Pose X_WP;
+    Vector3 size = Vector3::Zero();  ///< m; the scenario's, where its sensors do not tell
+  };
+  /// In the order of the sequence.
+  [[nodiscard]] std::vector<Box> boxes() const;
+
  private:
+  [[nodiscard]] std::optional<Pose> find_box(std::size_t item) const;
+
   cell::Simulation simulation_;
   click::Client client_;
   click::JointLink link_;
