@@ -90,15 +90,17 @@ study::Trial run_ur_trial(const PackOptions& options, const model::Scenario& sce
   (void)ur_endpoint_of(options);
   if (options.is_dry) return run_dry(options, scenario, session, simulated, progress, program);
   const perception::Kind kind = perception::kind_of(options.perception);
-  if (kind != perception::Kind::DeadReckoning && !options.observe) {
+  const bool needs_truth = kind != perception::Kind::DeadReckoning && kind != perception::Kind::Frames;
+  if (needs_truth && !options.observe) {
     throw InputError("command line", "--perception", "'" + options.perception + "' without --observe",
-                     "--observe ADDRESS, where boxes are told, or --perception dead-reckoning");
+                     "--observe ADDRESS, where boxes are told, or --perception frames or dead-reckoning");
   }
   std::optional<remote_plant::BoxObserver> observer;
   if (options.observe) observer.emplace(scenario, options.sequence, *options.observe, options.patience);
   remote_ur::RemoteUrOptions with_robot = robot_options(options, session);
   with_robot.link = connect_robot(options, scenario);
-  with_robot.perception = perception::make_perception(kind, options.plant_seed, scenario);
+  with_robot.perception =
+      perception::make_perception(kind, options.plant_seed, scenario, make_frames(options, scenario));
   if (session.resume) with_robot.brought = session.resume->item_count();
   if (observer) {
     with_robot.boxes = [&observer](std::vector<perception::SceneBox>& boxes) {
