@@ -106,6 +106,8 @@ Matrix3 rpy_rotation(const Vector3& rpy) {
   return R;
 }
 
+double assumed_speed(const Element& joint) { return joint.text("type") == "prismatic" ? kAssumedSlide : kAssumedSpeed; }
+
 Pose read_origin(const Element& element) {
   const std::vector<Element> origins = element.children("origin");
   if (origins.empty()) return {};
@@ -160,8 +162,9 @@ SpatialInertia read_inertial(const Element& link, bool moves) {
   Matrix3 M_I;
   M_I << xx, xy, xz, xy, yy, yz, xz, yz, zz;
   const Vector3 moments = symmetric_eigenpairs(M_I).values;
-  // The triangle inequality holds for any mass distribution; published tensors are rounded to about 1e-5 kg m^2.
-  if (moments(0) < 0.0 || moments(0) + moments(1) < moments(2) * (1.0 - 1e-2) - 2e-5)
+  // The triangle inequality holds for any mass distribution; published tensors are rounded to about 1e-5 kg m^2. A
+  // tensor of rank one (bare frames have some) has two moments that are zero but for the rounding of this computation.
+  if (moments(0) < -1e-12 * moments(2) || moments(0) + moments(1) < moments(2) * (1.0 - 1e-2) - 2e-5)
     tensor.fail("an inertia that no distribution of mass has",
                 "principal moments >= 0, none above the sum of the rest");
   result.inertia = X_LI.R * M_I * X_LI.R.transpose();
@@ -225,7 +228,7 @@ Joint read_moving_joint(const RawJoint& raw) {
   joint.axis = read_axis(raw);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (raw.type == "continuous" && !raw.element.has("limit")) {  // find_assumptions says so
-    joint.max_speed = kAssumedSpeed;
+    joint.max_speed = assumed_speed(raw.element);
     joint.max_effort = joint.upper = kInfinity;
     joint.lower = -kInfinity;
     return joint;
@@ -233,9 +236,11 @@ Joint read_moving_joint(const RawJoint& raw) {
   const Element limit = raw.element.child("limit");
   joint.max_speed = limit.number("velocity");
   joint.max_effort = limit.number("effort");
-  if (!(joint.max_speed > 0.0 && joint.max_effort >= 0.0))
-    limit.fail("velocity " + limit.text("velocity") + ", effort " + limit.text("effort"), "velocity > 0, effort >= 0");
-  if (joint.max_effort == 0.0) joint.max_effort = kInfinity;  // nobody knew it: find_unknown_efforts
+  if (!(joint.max_speed >= 0.0 && joint.max_effort >= 0.0))
+    limit.fail("velocity " + limit.text("velocity") + ", effort " + limit.text("effort"),
+               "velocity and effort >= 0 (0: not known)");
+  if (joint.max_effort == 0.0) joint.max_effort = kInfinity;                 // nobody knew it: find_unknown_efforts
+  if (joint.max_speed == 0.0) joint.max_speed = assumed_speed(raw.element);  // nor that: find_assumptions
   joint.lower = raw.type == "continuous" ? -kInfinity : limit.number("lower");
   joint.upper = raw.type == "continuous" ? kInfinity : limit.number("upper");
   if (!(joint.lower < joint.upper))

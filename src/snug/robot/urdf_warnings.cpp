@@ -25,6 +25,29 @@ void visit_moving(const std::string& text, const internal::UrdfSource& source, c
 
 bool is_without_limit(const Element& joint) { return joint.text("type") == "continuous" && !joint.has("limit"); }
 
+/// Does its limit say that nobody knew its speed?
+bool is_without_speed(const Element& joint) {
+  return joint.has("limit") && joint.child("limit").number_or("velocity", 1.0) == 0.0;
+}
+
+/// One line for each package whose meshes come from a folder of another name; `robot` is the root element.
+void add_renamed_packages(const Element& robot, std::vector<std::string>& found) {
+  std::vector<std::string> told;
+  for (const Element& link : robot.children("link")) {
+    for (const Element& collision : link.children("collision")) {
+      for (const Element& geometry : collision.children("geometry")) {
+        for (const Element& mesh : geometry.children("mesh")) {
+          const std::string folder = internal::renamed_package(mesh).string();
+          if (folder.empty() || std::ranges::find(told, folder) != told.end()) continue;
+          told.push_back(folder);
+          found.push_back(mesh.where() + ": '" + mesh.text("filename") + "' is taken from '" + folder +
+                          "': its package is in no folder of its name");
+        }
+      }
+    }
+  }
+}
+
 /// Links from the tool to the root.
 std::vector<std::string> path_of(const std::vector<Element>& joints, const std::string& tool_frame) {
   std::vector<std::string> path = {tool_frame};
@@ -55,7 +78,11 @@ std::vector<std::string> find_assumptions(const std::filesystem::path& path, con
     else if (is_without_limit(joint))
       found.push_back(joint.where() + ": " + joint.path() +
                       ": continuous, without limit: 180 degrees a second are assumed");
+    else if (is_without_speed(joint))
+      found.push_back(joint.where() + ": " + joint.path() + ": velocity 0 is taken as unknown: " +
+                      (joint.text("type") == "prismatic" ? "1 m/s is assumed" : "180 degrees a second are assumed"));
   }
+  add_renamed_packages(Element(document.RootElement(), source, ""), found);
   if (fixed.empty()) return found;
   std::string line = fixed.front().where() + ": " + std::to_string(fixed.size()) + " moving joint" +
                      (fixed.size() == 1 ? "" : "s") + " off the path to the tool frame '" + tool_frame + "' fixed:";
@@ -82,11 +109,13 @@ std::vector<JointLimits> parse_joint_limits(const std::string& text, const std::
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::vector<JointLimits> limits;
   visit_moving(text, {name, {}}, [&](const Element& joint) {
-    if (is_without_limit(joint)) limits.push_back({joint.text("name"), internal::kAssumedSpeed, kInfinity});
+    if (is_without_limit(joint)) limits.push_back({joint.text("name"), internal::assumed_speed(joint), kInfinity});
     if (!joint.has("limit")) return;
     const Element limit = joint.child("limit");
     const double effort = limit.number("effort");
-    limits.push_back({joint.text("name"), limit.number("velocity"), effort > 0.0 ? effort : kInfinity});
+    const double speed = limit.number("velocity");
+    limits.push_back(
+        {joint.text("name"), speed == 0.0 ? internal::assumed_speed(joint) : speed, effort > 0.0 ? effort : kInfinity});
   });
   return limits;
 }

@@ -15,9 +15,11 @@ namespace snug::robot::internal {
 /// Bytes of a URDF and of a mesh that it names: far above those of any arm, and little enough to be held whole.
 inline constexpr std::size_t kLargestUrdf = std::size_t{4} << 20U;
 
-/// rad/s, of a continuous joint whose <limit> the file leaves out, as the format allows: 180 degrees a second, what the
-/// wrists of collaborative arms reach.
+/// rad/s, of a continuous joint whose <limit> the file leaves out, as the format allows, and where it says 0, as
+/// exporters of CAD write what they do not know: 180 degrees a second, what the wrists of collaborative arms reach.
 inline constexpr double kAssumedSpeed = std::numbers::pi;
+/// m/s, of a sliding joint with velocity 0.
+inline constexpr double kAssumedSlide = 1.0;
 
 /// What is known about the text being read.
 struct UrdfSource {
@@ -69,8 +71,14 @@ class Element {
 [[nodiscard]] std::vector<model::PlacedShape> read_shapes(const Element& link);
 /// Points of a mesh file's hull, m, at most geometry::kMaxHullVertices of them; scaled.
 [[nodiscard]] geometry::ConvexHull read_mesh_hull(const Element& mesh);
-/// The file that a <mesh> names, which is there; package:// is a folder of that name above the URDF.
+/// kAssumedSpeed, or kAssumedSlide of a prismatic joint.
+[[nodiscard]] double assumed_speed(const Element& joint);
+/// The file that a <mesh> names, which is there. A package is a folder of its name beside or above the URDF; where
+/// there is none, one above the URDF in which the rest of the path is found: folders are renamed when they are copied.
 [[nodiscard]] std::filesystem::path find_mesh(const Element& mesh);
+/// What find_mesh took for the package of a `package://` path, if that folder has another name and its package.xml, if
+/// any, too; empty otherwise, and where the mesh is not there.
+[[nodiscard]] std::filesystem::path renamed_package(const Element& mesh);
 /// R = Rz(yaw) Ry(pitch) Rx(roll).
 [[nodiscard]] Matrix3 rpy_rotation(const Vector3& rpy);
 

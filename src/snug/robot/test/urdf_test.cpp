@@ -129,7 +129,7 @@ TEST(Urdf, RefusesWhatItCannotUseWithLineAndElement) {
   expect_refused(replaced(small_arm(), "upper=\"1\"", "upper=\"-2\""), "lower < upper", "8");
   expect_refused(replaced(small_arm(), "0 0 2", "0 0 0"), "a direction", "7");
   expect_refused(replaced(small_arm(), "0 0 2", "0 0 inf"), "3 finite numbers", "7");
-  expect_refused(replaced(small_arm(), "velocity=\"2\"", "velocity=\"0\""), "velocity > 0", "8");
+  expect_refused(replaced(small_arm(), "velocity=\"2\"", "velocity=\"-2\""), "velocity and effort >= 0", "8");
   expect_refused(replaced(small_arm(), "type=\"prismatic\"", "type=\"planar\""), "revolute, continuous", "9");
   expect_refused(replaced(small_arm(), "type=\"prismatic\"", "type=\"screw\""), "revolute, continuous", "9");
   expect_refused(replaced(small_arm(), "<axis xyz=\"1 0 0\"/>", "<mimic joint=\"turn\"/>"), "moves by itself", "10");
@@ -188,6 +188,60 @@ TEST(Urdf, TakesAnEffortOfZeroAsUnknownAndSaysWhere) {
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_TRUE(warnings[0].starts_with(path.string() + ":10: joint 'slide'")) << warnings[0];
   EXPECT_TRUE(find_unknown_efforts(SNUG_SOURCE_DIR "/scenarios/robots/ur10.urdf").empty());
+}
+
+TEST(Urdf, TakesASpeedOfZeroAsUnknownAndSaysWhere) {
+  const std::string text =
+      replaced(replaced(small_arm(), "velocity=\"2\"", "velocity=\"0\""), "velocity=\"1\"", "velocity=\"0\"");
+  const ArmModel arm = parse_urdf(text, "arm.urdf");
+  EXPECT_NEAR(arm.joints[0].max_speed, 3.14159265358979, 1e-12);
+  EXPECT_EQ(arm.joints[1].max_speed, 1.0);
+  const std::vector<JointLimits> limits = parse_joint_limits(text, "arm.urdf");
+  ASSERT_EQ(limits.size(), 2u);
+  EXPECT_EQ(limits[0].max_speed, arm.joints[0].max_speed);
+  EXPECT_EQ(limits[1].max_speed, 1.0);
+  const snug::test::ScratchFolder folder;
+  const std::filesystem::path path = folder / "speed.urdf";
+  std::ofstream(path) << text;
+  const std::vector<std::string> found = find_assumptions(path, "E");
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0],
+            path.string() + ":6: joint 'turn': velocity 0 is taken as unknown: 180 degrees a second are assumed");
+  EXPECT_EQ(found[1], path.string() + ":9: joint 'slide': velocity 0 is taken as unknown: 1 m/s is assumed");
+}
+
+/// A tetrahedron with edges of 0.1 m as OBJ.
+void write_mesh(const std::filesystem::path& path) {
+  std::filesystem::create_directories(path.parent_path());
+  std::ofstream(path) << "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+}
+
+TEST(Urdf, FindsAPackageWhoseFolderHasAnotherNameAndSaysSo) {
+  const snug::test::ScratchFolder scratch;
+  const std::filesystem::path folder = scratch / "renamed";
+  write_mesh(folder / "meshes/link.obj");
+  const std::filesystem::path path = folder / "urdf/arm.urdf";
+  std::filesystem::create_directories(path.parent_path());
+  const std::string mesh =
+      "<collision><geometry><mesh filename=\"package://arm_support/meshes/link.obj\"/></geometry></collision>";
+  std::ofstream(path) << small_arm(mesh + mesh);
+  EXPECT_EQ(load_urdf(path).links[1].shapes.size(), 2u);
+  const std::vector<std::string> found = find_assumptions(path, "E");
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0], path.string() + ":3: 'package://arm_support/meshes/link.obj' is taken from '" + folder.string() +
+                          "': its package is in no folder of its name");
+  // A folder of the name is preferred, and nothing is said of one whose package.xml has the name.
+  std::ofstream(folder / "package.xml") << "<package><name>arm_support</name></package>";
+  EXPECT_TRUE(find_assumptions(path, "E").empty());
+  std::ofstream(folder / "package.xml") << "<package><name>other</name></package>";
+  write_mesh(scratch / "arm_support/meshes/link.obj");
+  EXPECT_TRUE(find_assumptions(path, "E").empty());
+  // What is no file is no mesh, whatever stands above the URDF.
+  std::ofstream(path) << small_arm(
+      "<collision><geometry><mesh filename=\"package://arm_support\"/></geometry></collision>");
+  EXPECT_THROW((void)load_urdf(path), InputError);
+  std::ofstream(path) << small_arm("<collision><geometry><mesh filename=\"\"/></geometry></collision>");
+  EXPECT_TRUE(find_assumptions(path, "E").empty());
 }
 
 /// p_Ef of the finger: along y where it was fixed.
@@ -260,6 +314,18 @@ TEST(Urdf, LooksAtTheInertiaOfLinksThatMoveOnly) {
       replaced(small_arm(), "<link name=\"base\"/>", "<link name=\"base\">" + no_body + "</link>"), "arm.urdf");
   EXPECT_EQ(arm.links[0].inertia.mass, 1.0);
   expect_refused(small_arm(no_body), "no distribution of mass", "3");
+}
+
+TEST(Urdf, TakesAnInertiaOfRankOneInSpiteOfRounding) {
+  const auto inertia = [](const std::string& m) {
+    return small_arm("<inertial><mass value=\"1e-8\"/><inertia ixx=\"" + m + "\" iyy=\"" + m + "\" izz=\"" + m +
+                     "\" ixy=\"" + m + "\" ixz=\"" + m + "\" iyz=\"" + m + "\"/></inertial>");
+  };
+  for (const char* moment : {"1e-8", "3e-8", "7e-7", "1.1e-6"})
+    EXPECT_EQ(parse_urdf(inertia(moment), "arm.urdf").joint_count(), 2) << moment;
+  expect_refused(
+      small_arm("<inertial><mass value=\"1\"/><inertia ixx=\"-1e-6\" iyy=\"1e-5\" izz=\"1e-5\"/></inertial>"),
+      "no distribution of mass", "3");
 }
 
 TEST(Urdf, RefusesMacrosButNotCommentsOnThem) {
