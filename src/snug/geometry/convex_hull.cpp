@@ -197,6 +197,9 @@ bool grow(const std::vector<Vector3>& p, double tolerance, std::vector<Triangle>
     }
     if (farthest < 0) return true;
     add_point(p, farthest, tolerance, triangles);
+    // A closed surface of triangles without holes on n points has 2 n - 4 of them. More come when rounding lets a point
+    // see triangles that are not next to each other; each further point would then add many.
+    if (triangles.size() > 2 * static_cast<std::size_t>(round) + 6) return false;
   }
   return false;
 }

@@ -102,6 +102,26 @@ TEST(ConvexHull, RefusesWhatIsNoBody) {
   EXPECT_EQ(make_convex_hull(ball).error(), NoHull::TooManyVertices);
 }
 
+TEST(ConvexHull, EndsWhereRoundingTearsTheSurface) {
+  // A bar with rounded corners in single precision, as mesh files have it: a point sees triangles that are not next to
+  // each other, and each point after it would add a quarter to the triangles.
+  const double length = 80.0739, width = 23.177, height = 7.40016, radius = 0.338366;
+  constexpr int kSteps = 14;
+  std::vector<Vector3> bar;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3 sign((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1, (corner & 4) != 0 ? 1 : -1);
+    for (int i = 0; i <= kSteps; ++i) {
+      for (int j = 0; j <= kSteps; ++j) {
+        const double a = 0.5 * std::numbers::pi * i / kSteps, b = 0.5 * std::numbers::pi * j / kSteps;
+        const Vector3 at(length + radius * std::sin(a) * std::cos(b), width + radius * std::sin(a) * std::sin(b),
+                         height + radius * std::cos(a));
+        bar.push_back(0.001 * at.cwiseProduct(sign).cast<float>().cast<double>());
+      }
+    }
+  }
+  EXPECT_EQ(make_convex_hull(bar).error(), NoHull::TooManyVertices);
+}
+
 TEST(HullHull, AgreesWithTheBoxesThatTheHullsAre) {
   Rng rng(8);
   const test::PairMaker maker(1, 50);
