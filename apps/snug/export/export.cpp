@@ -8,11 +8,13 @@
 #include <string_view>
 
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/common/recorded_instant.hpp"
 #include "apps/snug/common/robot_files.hpp"
 #include "apps/snug/export/export_program.hpp"
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/record/csv.hpp"
+#include "snug/replay/glb_export.hpp"
 #include "snug/replay/mcap_export.hpp"
 
 namespace snug::app {
@@ -43,9 +45,23 @@ int write_csv(const ExportOptions& options, OutputFile output) {
   return kSuccess;
 }
 
+int write_glb(const ExportOptions& options, OutputFile output) {
+  record::RecordingReader reader(options.input);
+  expect_recorded(reader, options.input, options.time);
+  const replay::RobotDescription robot =
+      options.is_load_only ? replay::RobotDescription{} : find_robot(reader, options.input, options.urdf);
+  const replay::GlbTotals totals = replay::export_glb(reader, file_name(options.input),
+                                                      {options.time, options.is_load_only}, std::move(output), robot);
+  std::fprintf(stderr, "%s: %zu bodies at %.3f s, %zu triangles, %.2f MB\n", options.output.c_str(), totals.bodies,
+               totals.time, totals.triangles, static_cast<double>(totals.bytes) / 1e6);
+  return kSuccess;
+}
+
 constexpr std::array kFormats = {
     ExportFormat{"mcap", "a recording for Foxglove, Lichtblick and other viewers of MCAP", write_mcap},
     ExportFormat{"csv", "a recording as one table with the column names of mc_rtc logs", write_csv},
+    ExportFormat{"glb", "an instant of a recording, or the load alone, as binary glTF for slides, Blender and viewers",
+                 write_glb},
     ExportFormat{"urscript", "a program for the controller of a UR robot (no other); needs --scenario", write_urscript},
     ExportFormat{"ros-trajectory",
                  "a program as trajectory_msgs/JointTrajectory and times of the outputs, YAML; needs --scenario",

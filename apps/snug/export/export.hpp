@@ -1,6 +1,7 @@
 // export: what snug has in its own formats, for other programs.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -20,6 +21,8 @@ struct ExportOptions {
   replay::Selection selection;
   replay::McapCompression compression = replay::McapCompression::Zstd;
   std::optional<std::string> urdf;  ///< of the robot in a recording; absent: looked for
+  std::optional<double> time;       ///< s, of one instant; absent: the end
+  bool is_load_only = false;        ///< the container and the boxes in it
   // of programs
   std::string scenario;  ///< its robot, limits and gains
   ScenarioChanges changes;

@@ -18,6 +18,7 @@ Examples:
   snug export run.h5 --format mcap -o run.mcap
   snug export run.h5 --format mcap --from 10 --to 20 --every 4 -o part.mcap
   snug export run.h5 --format csv -o run.csv
+  snug export run.h5 --format glb --load -o load.glb
   snug export program.csv --scenario scenarios/box-demonstrator.yaml --format urscript -o program.script
   snug export program.csv --scenario scenarios/box-demonstrator.yaml --format urscript --dry-run -o dry.script
   snug export program.csv --scenario scenarios/box-demonstrator.yaml --format urscript --from-box BOX028 -o rest.script
@@ -36,7 +37,9 @@ constexpr std::array kOptionFormats = {
     OptionFormats{"--to", "mcap csv"},
     OptionFormats{"--every", "mcap csv"},
     OptionFormats{"--compression", "mcap"},
-    OptionFormats{"--urdf", "mcap"},
+    OptionFormats{"--urdf", "mcap glb"},
+    OptionFormats{"--time", "glb"},
+    OptionFormats{"--load", "glb"},
     OptionFormats{"--scenario", kPrograms},
     OptionFormats{"--items", kPrograms},
     OptionFormats{"--container", kPrograms},
@@ -160,8 +163,13 @@ void add_export(CLI::App& app, Action& action) {
   verb.add_flag("--dry-run", options->script.is_dry,
                 "of urscript: rows as straight moves 20 mm higher, at a quarter of their speed, nothing switched")
       ->excludes(from_box);
+  verb.add_option("--time", options->time, "of glb: the instant (default: the end)")
+      ->check(finite())
+      ->type_name("SECONDS");
+  verb.add_flag("--load", options->is_load_only,
+                "of glb: only the container and the boxes in it, in the container's frame");
   verb.add_option("--urdf", options->urdf,
-                  "of mcap: how the robot in it looks (default: the file that its scenario names)")
+                  "of mcap and glb: how the robot in it looks (default: the file that its scenario names)")
       ->type_name("FILE.urdf");
   verb.footer(footer + kExportExamples);
   verb.callback([options, compression, &verb, &action] {

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "snug/geometry/convex_hull.hpp"
+#include "snug/replay/internal/body_colours.hpp"
 #include "snug/replay/internal/mcap_messages.hpp"
 #include "snug/spatial/matrix6.hpp"
 
@@ -15,14 +16,7 @@ using record::PoseSample;
 
 constexpr int kDeleteAll = 1;  // of a SceneEntityDeletion
 
-// Colours as the page of viewer/ has them in its light theme, near enough.
-constexpr std::array<double, 4> kStill = {0.62, 0.64, 0.66, 1.0};
-constexpr std::array<double, 4> kSeeThrough = {0.62, 0.64, 0.66, 0.25};
-constexpr std::array<double, 4> kMover = {0.25, 0.28, 0.32, 1.0};
-constexpr std::array<double, 4> kParcel = {0.82, 0.66, 0.44, 1.0};
 constexpr std::array<double, 4> kLabel = {0.1, 0.1, 0.1, 1.0};
-constexpr std::array<double, 4> kCupFree = {0.35, 0.35, 0.4, 1.0};
-constexpr std::array<double, 4> kCupHolds = {0.0, 0.45, 0.70, 1.0};
 
 Json color_json(const std::array<double, 4>& color) {
   return {{"r", color[0]}, {"g", color[1]}, {"b", color[2]}, {"a", color[3]}};
@@ -82,8 +76,7 @@ void add_hull(Json& entity, const record::ShapeInfo& shape, const Json& color) {
 Json body_entity(std::uint64_t ns, const record::BodyInfo& body, bool is_container) {
   Json entity = make_entity(ns, body.name, body.name);
   const bool is_parcel = body.kind == record::BodyKind::Dynamic;
-  const bool is_still = body.kind == record::BodyKind::Static;
-  const Json color = color_json(is_parcel ? kParcel : is_container ? kSeeThrough : is_still ? kStill : kMover);
+  const Json color = color_json(body_colour(body, is_container));
   for (const record::ShapeInfo& shape : body.shapes) {
     switch (shape.kind) {
       case record::ShapeKind::Box:
