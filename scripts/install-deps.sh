@@ -1,5 +1,5 @@
 #!/bin/sh
-# install-deps.sh: the one list of Debian 12 packages that snug is built, tested and compared with.
+# install-deps.sh: the one list of packages, of Debian 12 and 13 alike, that snug is built, tested and compared with.
 #
 #   scripts/install-deps.sh              what building, testing and running need: the groups program and test
 #   scripts/install-deps.sh program      what the program needs to be built and to pack; test, python, cluster, lint, fuzz,
@@ -20,7 +20,7 @@ test="$python python3-pytest mypy python3-matplotlib hdf5-tools libbenchmark-dev
   python3-zmq python3-protobuf"
 cluster="slurm-wlm munge"           # the test of studies as jobs of a cluster, which is skipped without
 lint="clang clang-format clang-tidy" # make check, fix, tidy, clang
-fuzz="clang libclang-rt-14-dev"      # make fuzz
+fuzz="clang libclang-rt-dev"      # make fuzz
 peers="libbullet-dev libmujoco-dev"  # make bench-peers
 package="dpkg-dev file"              # make package
 docs="python3-sphinx python3-myst-parser furo" # make docs
