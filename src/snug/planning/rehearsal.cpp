@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "snug/core/parallel.hpp"
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::planning {
 namespace {
@@ -27,6 +28,26 @@ std::string describe_outside(const cell::ContainerFit& fit, bool is_beside, doub
   return is_beside ? fmt::format("it would be left beside the container, {:.0f} mm from its place", 1e3 * off)
                    : fmt::format("it would stick out ({:.0f} mm beyond a wall, {:.0f} mm over the rim)",
                                  1e3 * fit.outside, 1e3 * fit.above_rim);
+}
+
+/// Robots of fewer than six joints (palletisers, SCARA, gantries) turn their tool about the vertical alone.
+bool is_always_upright(const model::Scenario& scenario) {
+  constexpr std::size_t kJointsOfAnyPose = 6;
+  return scenario.robot && !scenario.robot->posture.empty() && scenario.robot->posture.size() < kJointsOfAnyPose;
+}
+
+/// Turns the tool upright, by the smallest angle, about its lip `length` [m] below E: a box that hangs a little askew
+/// because its centre of mass is beside the cup is then set down so, instead of by a tool that is tilted against it.
+/// Ways that tilt the tool by more than that are left as they are: the robot cannot follow them.
+void make_upright(std::vector<motion::Waypoint>& rows, double length) {
+  constexpr double kMostSag = 0.1;  // rad
+  for (motion::Waypoint& row : rows) {
+    const Vector3 z = row.X_WE.R.col(2);
+    const Quaternion upright = rotation_between(z, -Vector3::UnitZ());
+    if (std::acos(std::clamp(-z.z(), -1.0, 1.0)) > kMostSag) continue;
+    row.X_WE.R = upright.toRotationMatrix() * row.X_WE.R;
+    row.X_WE.p += length * (z + Vector3::UnitZ());
+  }
 }
 
 }  // namespace
@@ -271,7 +292,9 @@ Attempt Rehearsal::attempt(const packing::Candidate& candidate, const skills::In
   const motion::Waypoint& last = attempt.program.waypoints.back();
   const skills::PlaceRequest request{box_,      grasp.X_PS, attempt.planned.X_TP, insertion, packed_top,
                                      last.X_WE, grasp.X_EP};
-  auto waypoints = drivable(cell_.layout, last, plan_place(belief_.nominal(), cell_.layout, request), grasp.swing);
+  std::vector<motion::Waypoint> rows = plan_place(belief_.nominal(), cell_.layout, request);
+  if (is_always_upright(belief_.nominal())) make_upright(rows, belief_.nominal().cup.hold_length);
+  auto waypoints = drivable(cell_.layout, last, rows, grasp.swing);
   if (!can_follow(cell_.reaches, cell_.layout, last, waypoints)) {
     attempt.failure = AttemptFailure::OutOfReach;
     attempt.text = "the robot cannot follow the way to its place";
