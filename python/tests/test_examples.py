@@ -50,6 +50,39 @@ def test_agent():
     assert result.executed_boxes >= 5
 
 
+def test_what_is_learnt_from_is_the_same_in_the_environment_and_for_the_agent():
+    """The policy learns from arrays of the environment and acts on what an agent is told."""
+    sys.path.insert(0, str(EXAMPLES))
+    try:
+        learn = __import__("05_learn")
+    finally:
+        sys.path.pop(0)
+    env = snug.env.Packing(snug.load_scenario(DEMONSTRATOR), sequence="1", observation="boxes")
+    observation, _ = env.reset(seed=1)
+    for _ in range(3):
+        observation, *_ = env.step(0)
+    count, size = int(observation["action_mask"].sum()), env.scenario.container["inner_size"]
+    places, boxes = observation["candidates"][:count], observation["boxes"][observation["boxes"][:, 6] > 0]
+    seen = learn.features(places[:, :3], places[:, 3:6], places[:, 6], observation["item"], size, boxes)
+    assert seen.shape == (count, learn.FEATURES) and seen.dtype == "float32" and len(boxes) == 3
+    assert (abs(seen) <= 10).all() and (seen[:, 6:8] > -1e-3).all()  # within the walls
+    told = learn.features(*(places[:, part].astype(float).tolist() for part in (slice(3), slice(3, 6), 6)),
+                          observation["item"][:4].tolist(), list(size), boxes[:, :6].tolist())
+    assert (abs(told - seen) < 1e-6).all()
+
+
+def test_the_learnt_agent_packs(tmp_path, monkeypatch):
+    pytest.importorskip("sb3_contrib")
+    run("05_learn.py", "256", "learnt.zip", "2", cwd=tmp_path)
+    monkeypatch.setenv("SNUG_LEARNT", str(tmp_path / "learnt.zip"))
+    sys.path.insert(0, str(EXAMPLES))
+    try:
+        agent = __import__("05_learn").Learnt()
+    finally:
+        sys.path.pop(0)
+    assert snug.pack(snug.load_scenario(DEMONSTRATOR), "1", agent=agent, samples=0, robot="none").executed_boxes > 0
+
+
 @pytest.mark.parametrize("name", ["01_simulate_and_plot.py", "02_pack_and_report.py"])
 def test_examples_are_ten_lines(name):
     lines = [line for line in (EXAMPLES / name).read_text().splitlines()[1:]
