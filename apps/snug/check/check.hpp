@@ -1,4 +1,4 @@
-// check: whether the robot can do a program, before anything moves.
+// check: whether the robot can do a program, and where it can stand at all, before anything moves.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,8 @@ namespace snug::app {
 struct CheckOptions {
   std::string scenario;
   ScenarioChanges changes;
-  std::string program;
+  std::string program;  ///< empty with `maps_reach`
+  bool maps_reach = false;
   std::optional<std::string> sequence;
   std::optional<std::string> robot;
   MotionWords motion;

@@ -14,75 +14,22 @@
 #include "snug/cell/simulation.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/cup/phases.hpp"
-#include "snug/geometry/manifold.hpp"
 #include "snug/motion/waypoint_name.hpp"
+#include "snug/runs/internal/pose_check.hpp"
 #include "snug/spatial/matrix6.hpp"
 
 namespace snug::runs {
 namespace {
 
-using cell::build_world;
 using cell::HeldBox;
 using cell::HeldBoxes;
 using cell::Simulation;
 using cell::StandingBox;
+using internal::Mover;
+using internal::Obstacle;
+using internal::PoseMargin;
 
 constexpr double kRadian = 0.3;  ///< m, that a turn by 1 rad counts as
-// Below this the controller's task gives way (joint_controller.cpp): the tool is no longer where it should be.
-constexpr double kSingular = 0.05;
-// Beyond a limit by less than this is the rounding of a controller that keeps it.
-constexpr double kLimitRounding = 1e-6;
-/// m, by which a tick may fall short of a safety distance: the controller's dampers keep it to first order.
-constexpr double kDamperSlack = 0.001;
-
-struct Obstacle {
-  std::string name;
-  geometry::Shape shape;
-  Pose X_WG;
-  geometry::Aabb bounds;
-};
-
-/// Shapes that move together and are judged together.
-struct Mover {
-  std::string name;
-  int segment = 0;                         ///< of the arm
-  std::vector<model::PlacedShape> shapes;  ///< X_BG in the segment
-  double allowance = 0.0;                  ///< m, that it may press into something
-};
-
-std::vector<Obstacle> find_obstacles(const model::Scenario& scenario) {
-  std::vector<Obstacle> obstacles;
-  for (const physics::BodyModel& body : build_world(scenario, {nullptr, false, nullptr, {}}).model.bodies) {
-    if (body.kind != physics::BodyKind::Static) continue;
-    for (const physics::Geom& geom : body.geoms) {
-      const Pose X_WG = body.X_WB * geom.X_BG;
-      obstacles.push_back({body.name, geom.shape, X_WG, geometry::bounds(geom.shape, X_WG)});
-    }
-  }
-  return obstacles;
-}
-
-std::vector<Mover> find_movers(const model::Scenario& scenario, const robot::ArmModel& arm, double allowance) {
-  std::vector<Mover> movers;
-  const int sensor = robot::find_link(arm, scenario.robot->sensor_frame);
-  for (int i = 0; i < static_cast<int>(arm.links.size()); ++i) {
-    const robot::Link& link = arm.links[static_cast<std::size_t>(i)];
-    if (link.segment == 0 || link.shapes.empty() || robot::is_behind(arm, i, sensor)) continue;
-    Mover mover{link.name, link.segment, {}, 0.0};
-    for (const model::PlacedShape& shape : link.shapes) mover.shapes.push_back({shape.shape, link.X_SL * shape.X_BG});
-    movers.push_back(std::move(mover));
-  }
-  const auto carried = [&](const char* name, const std::vector<model::PlacedShape>& shapes, double slack) {
-    Mover mover{name, arm.joint_count(), {}, slack};
-    for (const model::PlacedShape& shape : shapes) mover.shapes.push_back({shape.shape, arm.X_SE * shape.X_BG});
-    movers.push_back(std::move(mover));
-  };
-  if (scenario.tool) {
-    carried("gripper", scenario.tool->rod_shapes, 0.0);
-    carried("cup", scenario.tool->cup_shapes, allowance);
-  }
-  return movers;
-}
 
 class Check {
  public:
@@ -92,8 +39,7 @@ class Check {
             scenario, options.sequence.empty() ? any_sequence(scenario) : options.sequence,
             {options.tracking, cup::CupMode::Holding, options.robot.empty() ? scenario.robot->name : options.robot}),
         plan_(simulation_.prepare(program)),
-        obstacles_(find_obstacles(scenario)),
-        movers_(find_movers(scenario, arm(), options.allowance)),
+        pose_check_(scenario, arm(), controller().clearance(), options.allowance, options.range),
         machine_(control::make_demonstrator_machine()),
         boxes_(simulation_.scenario(), simulation_.sequence()) {}
 
@@ -148,6 +94,7 @@ class Check {
   void note(CheckKind kind, const std::string& what, double margin, const char* unit, bool is_error = true,
             double allowance = 0.0) {
     const double left = margin + allowance;
+    const bool is_kept = PoseMargin{kind, "", margin, unit, allowance}.is_kept();
     const auto keep = [&](std::vector<CheckFinding>& list, bool same_row) {
       for (CheckFinding& known : list) {
         if (known.kind != kind || (same_row && (known.row != row_ || known.what != what))) continue;
@@ -157,7 +104,7 @@ class Check {
       list.push_back(make(kind, what, margin, unit, is_error, allowance));
     };
     keep(result_.margins, false);
-    if (left < -kLimitRounding) keep(result_.findings, true);
+    if (!is_kept) keep(result_.findings, true);
   }
   [[nodiscard]] CheckFinding make(CheckKind kind, const std::string& what, double margin, const char* unit,
                                   bool is_error, double allowance) const {
@@ -181,7 +128,7 @@ class Check {
     const robot::ArmPose at = robot::forward(arm(), q);
     const robot::Jacobian J_WE = robot::tool_jacobian(arm(), at);
     const double singularity = robot::singularity_measure(J_WE);
-    note(CheckKind::Singularity, "tool", singularity - kSingular, "1");
+    pose_check_.look_at_singularity(singularity, note_);
     look_at_joints(q, J_WE, wanted_twist(tool, X_WE_reference), singularity);
     look_at_distances(at);
   }
@@ -199,16 +146,12 @@ class Check {
                       double singularity) {
     const model::RobotParams& params = simulation_.arm()->controller().settings().params;
     Matrix6 M = robot::gram(J_WE);
-    if (singularity < kSingular) M.diagonal().array() += 1e-4;
+    if (singularity < internal::kSingularPose) M.diagonal().array() += 1e-4;
     const robot::JointVector qd = J_WE.transpose() * snug::solve(M, V_WE);
     for (int j = 0; j < arm().joint_count(); ++j) {
       const robot::Joint& joint = arm().joints[static_cast<std::size_t>(j)];
       const bool turns = joint.kind == robot::JointKind::Revolute;
-      const double range = joint.upper - joint.lower;
-      if (std::isfinite(range)) {
-        note(CheckKind::JointLimit, joint.name,
-             std::min(q[j] - joint.lower, joint.upper - q[j]) - params.damper.safety * range, turns ? "rad" : "m");
-      }
+      pose_check_.look_at_limit(j, q[j], note_);
       const double speed = std::abs(qd[j]), allowed = params.velocity_fraction * joint.max_speed;
       note(CheckKind::JointSpeed, joint.name, allowed - speed, turns ? "rad/s" : "m/s", speed > joint.max_speed);
     }
@@ -253,55 +196,22 @@ class Check {
   }
 
   void look_at_distances(const robot::ArmPose& at) {
-    const control::Clearance& clearance = simulation_.arm()->controller().clearance();
-    for (int i = 0; i < static_cast<int>(clearance.pairs().size()); ++i) {
-      const control::Nearest nearest = clearance.nearest(at, i);
-      if (nearest.index < 0) continue;
-      note(CheckKind::SelfCollision, clearance.name_of(i),
-           nearest.distance - clearance.pairs()[static_cast<std::size_t>(i)].safety, "m", true, kDamperSlack);
-    }
-    for (const Mover& mover : movers_) {
-      look_at_all(mover, at.X_WS[static_cast<std::size_t>(mover.segment)]);
-    }
+    pose_check_.look_at_distances(at, packed_, options_.packed_allowance, note_);
     if (!boxes_.held() || options_.sequence.empty()) return;
     const HeldBox& held = *boxes_.held();
     const std::string& name = simulation_.sequence().items[static_cast<std::size_t>(held.item)].parcel;
     const Mover box{name, 0, {{geometry::Box{0.5 * held.size}, held.X_EP}}, options_.allowance};
-    look_at_all(box, at.X_WE);
-  }
-
-  void look_at_all(const Mover& mover, const Pose& X_WS) {
-    look_at_obstacles(mover, X_WS, obstacles_, mover.allowance);
-    look_at_obstacles(mover, X_WS, packed_, mover.allowance > 0.0 ? options_.packed_allowance : 0.0);
-  }
-
-  void look_at_obstacles(const Mover& mover, const Pose& X_WS, const std::vector<Obstacle>& obstacles,
-                         double allowance) {
-    for (const model::PlacedShape& placed : mover.shapes) {
-      const Pose X_WG = X_WS * placed.X_BG;
-      const geometry::Aabb bounds = geometry::bounds(placed.shape, X_WG).inflated(options_.range);
-      for (const Obstacle& obstacle : obstacles) {
-        if (!bounds.overlaps(obstacle.bounds)) continue;
-        geometry::PairCache cache;
-        geometry::Manifold manifold;
-        geometry::collide(obstacle.shape, obstacle.X_WG, placed.shape, X_WG, options_.range, cache, manifold);
-        double distance = options_.range;
-        for (int i = 0; i < manifold.count; ++i) {
-          distance = std::min(distance, manifold.points[static_cast<std::size_t>(i)].phi);
-        }
-        if (distance < options_.range) {
-          note(CheckKind::Collision, mover.name + " - " + obstacle.name, distance, "m", true, allowance);
-        }
-      }
-    }
+    pose_check_.look_at(box, at.X_WE, packed_, options_.packed_allowance, note_);
   }
 
   CheckOptions options_;
   Simulation simulation_;
   motion::PreparedProgram plan_;
-  std::vector<Obstacle> obstacles_;  ///< that do not move
-  std::vector<Obstacle> packed_;     ///< boxes
-  std::vector<Mover> movers_;
+  internal::PoseCheck pose_check_;
+  std::vector<Obstacle> packed_;  ///< boxes
+  const internal::PoseCheck::Note note_ = [this](const PoseMargin& one) {
+    note(one.kind, one.what, one.margin, one.unit, true, one.allowance);
+  };
   control::StateMachine machine_;
   HeldBoxes boxes_;
   std::optional<Twist> V_WE_last_;  ///< a tick before

@@ -1,0 +1,287 @@
+// ReachMap: where over the container and at the places of pick the robot's tool can stand, and what keeps it from
+// others.
+#include "snug/runs/reach_map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "snug/cell/aligner_feed.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/core/parallel.hpp"
+#include "snug/cup/pick_length.hpp"
+#include "snug/motion/tool_yaw.hpp"
+#include "snug/robot/inverse.hpp"
+#include "snug/robot/load_arm.hpp"
+#include "snug/runs/internal/pose_check.hpp"
+
+namespace snug::runs {
+namespace {
+
+using internal::PoseMargin;
+
+constexpr int kMostAcross = 24;          ///< points along the longer edge
+constexpr int kMostAcrossSearched = 10;  ///< where each takes a search
+constexpr std::size_t kMostPicks = 64;
+constexpr double kSamePick = 0.005;  ///< m: picks so near to each other are one
+
+ReachVerdict verdict_of(CheckKind kind) {
+  switch (kind) {
+    case CheckKind::JointLimit:
+      return ReachVerdict::JointLimit;
+    case CheckKind::Singularity:
+      return ReachVerdict::Singular;
+    case CheckKind::SelfCollision:
+      return ReachVerdict::SelfCollision;
+    default:
+      return ReachVerdict::Collision;
+  }
+}
+
+/// The item as it stands at the aligner, and its height there.
+struct StandingItem {
+  std::string name;
+  Vector3 top;  ///< m, in W: middle of the upper face
+  double height = 0.0;
+};
+
+std::vector<StandingItem> find_items(const model::Scenario& scenario) {
+  std::vector<StandingItem> items;
+  if (!scenario.aligner) return items;
+  for (const model::Sequence& sequence : scenario.sequences) {
+    for (const model::Item& item : sequence.items) {
+      const model::Parcel* parcel = model::find_parcel(scenario, item.parcel);
+      if (parcel == nullptr) continue;
+      const Pose X_WP = cell::pose_at_aligner(scenario, item, 0);
+      const double height = (X_WP.R.row(2).cwiseAbs() * model::collision_size(scenario, *parcel)).value();
+      items.push_back({item.parcel, X_WP.p + Vector3(0.0, 0.0, 0.5 * height), height});
+    }
+  }
+  return items;
+}
+
+/// Texts that points share, each once.
+class Whats {
+ public:
+  int index_of(const std::string& what) {
+    const auto known = std::ranges::find(all_, what);
+    if (known != all_.end()) return static_cast<int>(known - all_.begin());
+    all_.push_back(what);
+    return static_cast<int>(all_.size()) - 1;
+  }
+  [[nodiscard]] std::vector<std::string> take() { return std::move(all_); }
+
+ private:
+  std::vector<std::string> all_{""};
+};
+
+std::vector<ReachLayer> make_layers(const model::Container& container, const std::vector<StandingItem>& items) {
+  double low = 0.1, high = 0.1;
+  if (!items.empty()) {
+    const auto [least, most] = std::ranges::minmax(items, {}, &StandingItem::height);
+    low = least.height;
+    high = most.height;
+  }
+  const double rim = container.inner_size.z();
+  low = std::min(low, rim);
+  return {{"low box on the floor", low, {}},
+          {"half way up", 0.5 * (low + rim), {}},
+          {container.has_walls ? "at the rim" : "highest box", rim, {}},
+          {"carried over the rim", rim + high, {}}};
+}
+
+}  // namespace
+
+struct PoseReachability::Impl {
+  Impl(const model::Scenario& scenario, const CheckOptions& options)
+      : arm(robot::load_arm(scenario)),
+        inverse(arm),
+        posture(robot::joint_vector(scenario.robot->posture)),
+        clearance(arm, {}, scenario.robot->self_collision, scenario.source_name),
+        check(scenario, arm, clearance, options.allowance, options.range) {}
+
+  /// Each branch with the full turns that bring it nearest to the posture, where all joints are within their limits;
+  /// the nearest branch first.
+  [[nodiscard]] std::vector<robot::JointVector> within_limits(const robot::IkBranches& found) const {
+    std::vector<robot::JointVector> all;
+    for (int i = 0; i < found.count; ++i) {
+      robot::JointVector q = found.q[static_cast<std::size_t>(i)];
+      bool is_within = true;
+      for (int j = 0; j < arm.joint_count() && is_within; ++j) {
+        const robot::Joint& joint = arm.joints[static_cast<std::size_t>(j)];
+        if (joint.kind == robot::JointKind::Revolute) {
+          constexpr double kTurn = 2.0 * std::numbers::pi;
+          q[j] += kTurn * std::round((posture[j] - q[j]) / kTurn);
+          if (q[j] < joint.lower) q[j] += kTurn;
+          if (q[j] > joint.upper) q[j] -= kTurn;
+        }
+        is_within = joint.lower <= q[j] && q[j] <= joint.upper;
+      }
+      if (is_within) all.push_back(q);
+    }
+    std::ranges::stable_sort(all, {}, [&](const robot::JointVector& q) { return (q - posture).squaredNorm(); });
+    return all;
+  }
+
+  /// What check would say of these joints.
+  [[nodiscard]] PoseReach judge(const robot::JointVector& q) const {
+    PoseReach result;
+    result.q.assign(q.data(), q.data() + q.size());
+    const auto note = [&](const PoseMargin& one) {
+      if (one.is_kept()) return;
+      const double left = one.margin + one.allowance;
+      // The first kind that fails is told, in the order of the looks; of one kind the worst.
+      const bool is_first = result.verdict == ReachVerdict::Reached;
+      if (!is_first && (result.verdict != verdict_of(one.kind) || left >= result.margin)) return;
+      result.verdict = verdict_of(one.kind);
+      result.what = one.what;
+      result.margin = left;
+    };
+    for (int j = 0; j < arm.joint_count(); ++j) check.look_at_limit(j, q[j], note);
+    const robot::ArmPose at = robot::forward(arm, q);
+    check.look_at_singularity(robot::singularity_measure(robot::tool_jacobian(arm, at)), note);
+    check.look_at_distances(at, {}, 0.0, note);
+    return result;
+  }
+
+  /// The joint that keeps the branch from its limits that is least beyond them.
+  [[nodiscard]] PoseReach beyond_limits(const robot::IkBranches& found) const {
+    PoseReach result{ReachVerdict::JointLimit, "", 0.0, {}};
+    double nearest = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < found.count; ++i) {
+      const robot::JointVector& q = found.q[static_cast<std::size_t>(i)];
+      double worst = 0.0;
+      std::string what;
+      for (int j = 0; j < arm.joint_count(); ++j) {
+        const robot::Joint& joint = arm.joints[static_cast<std::size_t>(j)];
+        const double beyond = std::max(joint.lower - q[j], q[j] - joint.upper);
+        if (beyond <= worst) continue;
+        worst = beyond;
+        what = joint.name;
+      }
+      if (worst >= nearest || what.empty()) continue;
+      nearest = worst;
+      result.what = what;
+      result.margin = -worst;
+    }
+    return result;
+  }
+
+  robot::ArmModel arm;
+  robot::InverseKinematics inverse;
+  robot::JointVector posture;
+  control::Clearance clearance;
+  internal::PoseCheck check;
+};
+
+PoseReachability::PoseReachability(const model::Scenario& scenario, const CheckOptions& options)
+    : impl_(std::make_unique<const Impl>(scenario, options)) {}
+PoseReachability::~PoseReachability() = default;
+
+bool PoseReachability::is_searched() const { return !impl_->inverse.has_closed_form(); }
+
+PoseReach PoseReachability::look(const Pose& X_WE) const {
+  const robot::IkBranches found = impl_->inverse.branches(X_WE, impl_->posture);
+  if (found.count == 0) return {ReachVerdict::OutOfReach, "", 0.0, {}};
+  const std::vector<robot::JointVector> candidates = impl_->within_limits(found);
+  if (candidates.empty()) return impl_->beyond_limits(found);
+  PoseReach told;
+  for (const robot::JointVector& q : candidates) {
+    PoseReach result = impl_->judge(q);
+    if (result.verdict == ReachVerdict::Reached) return result;
+    // A wall in the way of an arm that could stand there says more than an arm that turned over onto itself.
+    if (told.q.empty() || result.verdict > told.verdict) told = std::move(result);
+  }
+  return told;
+}
+
+const char* name_of(ReachVerdict verdict) {
+  switch (verdict) {
+    case ReachVerdict::Reached:
+      return "reached";
+    case ReachVerdict::OutOfReach:
+      return "out of reach";
+    case ReachVerdict::JointLimit:
+      return "joint limit";
+    case ReachVerdict::Singular:
+      return "singularity";
+    case ReachVerdict::SelfCollision:
+      return "self-collision";
+    case ReachVerdict::Collision:
+      break;
+  }
+  return "collision";
+}
+
+ReachMap make_reach_map(const model::Scenario& scenario, int threads, const CheckOptions& options) {
+  const auto require = [&](bool is_there, const char* key, const char* expected) {
+    if (!is_there) throw InputError(scenario.source_name, key, "", expected);
+  };
+  require(scenario.robot.has_value(), "robot", "a robot, to map what it reaches");
+  require(scenario.tool.has_value(), "tool", "a tool, to map what it reaches");
+  const model::Container* container = model::find_container(scenario, scenario.target);
+  require(container != nullptr, "containers", "a container, to map what is reached in it");
+  const std::optional<double> yaw = motion::yaw_of(scenario.controller.X_WE_start.R);
+  require(yaw.has_value(), "controller.start_pose", "a tool that points down");
+  const PoseReachability reach(scenario, options);
+
+  ReachMap map;
+  map.robot = scenario.robot->name;
+  map.container = container->name;
+  map.X_WT = container->X_WT;
+  map.inner_size = container->inner_size;
+  map.tool_yaw = *yaw;
+  const double spacing =
+      container->inner_size.head<2>().maxCoeff() / (reach.is_searched() ? kMostAcrossSearched : kMostAcross);
+  map.columns = std::max(1, static_cast<int>(std::lround(container->inner_size.x() / spacing)));
+  map.rows = std::max(1, static_cast<int>(std::lround(container->inner_size.y() / spacing)));
+  const std::vector<StandingItem> items = find_items(scenario);
+  map.layers = make_layers(*container, items);
+
+  std::vector<Pose> poses;
+  const Matrix3 R_WE = motion::upright_tool(*yaw);
+  for (const ReachLayer& layer : map.layers) {
+    for (int row = 0; row < map.rows; ++row) {
+      for (int column = 0; column < map.columns; ++column) {
+        const Vector3 p_TS((column + 0.5) / map.columns * map.inner_size.x() - 0.5 * map.inner_size.x(),
+                           (row + 0.5) / map.rows * map.inner_size.y() - 0.5 * map.inner_size.y(), layer.height);
+        poses.push_back({R_WE, map.X_WT * p_TS + Vector3(0.0, 0.0, scenario.cup.hold_length)});
+      }
+    }
+  }
+  const std::size_t points = poses.size();
+  for (const StandingItem& item : items) {
+    const auto known = std::ranges::find_if(
+        map.picks, [&](const ReachPick& pick) { return (pick.p_WS - item.top).norm() < kSamePick; });
+    if (known != map.picks.end()) {
+      ++known->count;
+    } else if (map.picks.size() < kMostPicks) {
+      map.picks.push_back({item.name, 1, item.top, {}});
+      poses.push_back({R_WE, item.top + Vector3(0.0, 0.0, cup::pick_length(scenario.cup))});
+    }
+  }
+  std::vector<PoseReach> found(poses.size());
+  parallel_for(static_cast<int>(poses.size()), threads, [&](int i, int) {
+    found[static_cast<std::size_t>(i)] = reach.look(poses[static_cast<std::size_t>(i)]);
+  });
+
+  Whats whats;
+  const std::size_t layer_points = map.layers.empty() ? 1 : points / map.layers.size();
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const ReachPoint point{found[i].verdict, whats.index_of(found[i].what)};
+    if (i < points) {
+      map.layers[i / layer_points].points.push_back(point);
+      ++map.counts[static_cast<std::size_t>(point.verdict)];
+    } else {
+      map.picks[i - points].point = point;
+    }
+  }
+  map.whats = whats.take();
+  return map;
+}
+
+}  // namespace snug::runs
