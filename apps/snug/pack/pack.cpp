@@ -25,6 +25,7 @@
 #include "snug/robot/load_arm.hpp"
 #include "snug/runs/result_json.hpp"
 #include "snug/runs/run_table.hpp"
+#include "snug/serve/live_file.hpp"
 #include "snug/study/monte_carlo.hpp"
 #include "snug/study/trial_report.hpp"
 
@@ -71,6 +72,7 @@ void refuse_options_of_a_robot(const PackOptions& options) {
 struct PackFiles {
   std::optional<OutputFile> program, plan, record;
   std::optional<session::LogFile> log;
+  std::optional<serve::LiveFile> live;
 
   PackFiles(const PackOptions& options, const model::Scenario& scenario) {
     NamedFiles outputs;
@@ -78,6 +80,7 @@ struct PackFiles {
     add_file(outputs, "--plan", options.plan);
     add_file(outputs, "-o", options.record);
     add_file(outputs, "--log", options.log);
+    add_file(outputs, "--live", options.live);
     NamedFiles inputs = files_of(options.scenario, options.changes, scenario);
     add_file(inputs, "--resume", options.resume);
     expect_distinct(inputs, outputs);
@@ -85,6 +88,7 @@ struct PackFiles {
     plan = reserve(options.plan);
     record = reserve_recording(options.record);
     if (options.log) log.emplace(*options.log);
+    if (options.live) live.emplace(*options.live, std::filesystem::path(*options.live).stem().string());
     if (options.save_beliefs) make_folder("--save-belief", *options.save_beliefs);
   }
   /// The placements so far: at their path where no earlier file is, else beside it until they are complete.
@@ -198,12 +202,14 @@ int run_pack(const PackOptions& options) {
   };
   study::TrialFiles written;
   if (files.record) written.recording = recording_of(plant, session.agent, *files.record);
+  if (files.live && written.recording) written.recording->observer = &*files.live;
   written.describe = [](const runs::RunResult& one) { return runs::format_result(one); };
   if (files.program) written.program = &*files.program;
   const study::Trial trial =
       options.plant.starts_with("ur://") ? run_ur_trial(options, scenario, session, plant, progress, written.program)
       : is_served                        ? run_served_trial(options, scenario, session, progress, written.program)
                   : study::run_trial(scenario, options.sequence, session, plant, progress, written);
+  if (files.live) files.live->finish();
   const session::SessionResult& result = trial.session;
   study::MonteCarloResult repeated;
   if (options.monte_carlo) {

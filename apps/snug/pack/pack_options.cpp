@@ -179,8 +179,13 @@ void add_pack(CLI::App& app, Action& action) {
       ->type_name("N");
   verb.add_option("--program", options->program, "write the waypoint program")->type_name("FILE.csv");
   verb.add_option("--plan", options->plan, "write the placements as JSON")->type_name("FILE.json");
-  verb.add_option("-o,--record", options->record, "write a recording of what happened in the plant")
-      ->type_name("FILE.h5");
+  CLI::Option* record =
+      verb.add_option("-o,--record", options->record, "write a recording of what happened in the plant")
+          ->type_name("FILE.h5");
+  verb.add_option("--live", options->live,
+                  "write 31 frames a second of the recording while it goes on, for who watches it: snug ui does")
+      ->needs(record)
+      ->type_name("FILE.live");
   verb.add_option("--log", options->log, "write the events of the session, a line of JSON each, when they happen")
       ->type_name("FILE.jsonl");
   verb.add_option("--resume", options->resume,

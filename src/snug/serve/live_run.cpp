@@ -3,9 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "snug/core/base64.hpp"
 #include "snug/replay/replay.hpp"
 #include "snug/report/recordings_page.hpp"
+#include "snug/serve/internal/live_form.hpp"
 
 namespace snug::serve {
 namespace {
@@ -24,7 +24,7 @@ std::string form_of(const replay::HeaderInput& input, replay::FrameCoder& coder)
 LiveRun::LiveRun(std::string name, double speed) : name_(std::move(name)), speed_(speed) {}
 
 void LiveRun::log(const char* event, const std::string& data) {
-  auto text = std::make_shared<const std::string>(std::string("event: ") + event + "\ndata: " + data + "\n\n");
+  auto text = std::make_shared<const std::string>(internal::server_event(event, data));
   log_bytes_ += text->size();
   log_.push_back(std::move(text));
   changed_.notify_all();
@@ -63,9 +63,7 @@ void LiveRun::add(const record::Event& event) {
 bool LiveRun::add(const record::Frame& frame) {
   std::unique_lock lock(mutex_);
   if (log_.empty()) {
-    replay::FrameCoder still(header_);
-    still.set_static(frame);
-    log("header", base64(form_of({name_, &header_, {}, "", false, 0}, still)));
+    log("header", internal::header_data(name_, header_, frame));
     origin_ = last_flush_ = Clock::now();
     if (is_paused_) log_state();
   }
@@ -79,23 +77,8 @@ bool LiveRun::add(const record::Frame& frame) {
 void LiveRun::flush() {
   last_flush_ = Clock::now();
   if (batch_->frames() == 0) return;
-  Json events = Json::array();
-  for (const record::Event& event : batch_events_) {
-    Json numbers = Json::object();
-    for (const record::EventNumber& number : event.numbers) numbers[number.name] = number.value;
-    events.push_back({{"time", event.time},
-                      {"kind", event.kind},
-                      {"body", event.body},
-                      {"text", event.text},
-                      {"numbers", std::move(numbers)}});
-  }
+  log("frames", internal::frames_data(*batch_, batch_events_));
   batch_events_.clear();
-  const Json header = {{"format", "snug replay"},
-                       {"version", replay::kReplayVersion},
-                       {"frames", batch_->frames()},
-                       {"events", std::move(events)}};
-  const std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
-  log("frames", base64(replay::encode_form(text, batch_->finish())));
 }
 
 bool LiveRun::wait_for_turn(std::unique_lock<std::mutex>& lock) {

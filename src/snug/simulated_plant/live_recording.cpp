@@ -14,6 +14,7 @@ namespace {
 runs::RecorderSetup setup_of(const SimulatedPlant& plant, const LiveRecordingOptions& options) {
   runs::RecorderSetup setup;
   setup.file = options.file;
+  setup.observer = options.observer;
   setup.period = plant.simulation().scenario().controller.tick;
   setup.program_name = "pack";
   setup.program_grows = true;

@@ -15,8 +15,9 @@ namespace snug::simulated_plant {
 class SimulatedPlant;
 
 struct LiveRecordingOptions {
-  OutputFile* file = nullptr;  ///< taken; not owned
-  std::string version;         ///< for the recording
+  OutputFile* file = nullptr;             ///< taken; not owned
+  std::string version;                    ///< for the recording
+  runs::RunObserver* observer = nullptr;  ///< sees the same frames and events; not owned; the run does not end for it
   std::string settings_json = "{}";
 };
 
