@@ -25,6 +25,9 @@ int run_ui(const UiOptions& options) {
     if (name == "scene") continue;  // nothing is packed there
     settings.templates.push_back({name, kind.description, shipped_folder() / "scenarios/init" / (name + ".yaml")});
   }
+  settings.templates.push_back({"demonstrator",
+                                "a tote cell with a UR10, beside a conveyor: what a robot reaches is shown",
+                                shipped_folder() / "scenarios/box-demonstrator.yaml"});
   workspace::Service service(settings);
   serve::ApiServer server(options.port, workspace::kLargestUpload,
                           {{"/", "text/html; charset=utf-8", std::string(workspace_page())},

@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::string_view kNameRule =
     "at most 100 letters, digits, '.', '_' and '-', a letter or digit first, ending in .yaml or .csv (files of runs: "
-    ".jsonl, .txt, .h5, .program.csv, .html)";
+    ".jsonl, .txt, .h5, .program.csv, .html, .live)";
 
 bool is_letter_or_digit(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'); }
 
@@ -75,14 +75,15 @@ FileKind kind_of_name(std::string_view name) {
   const bool is_plain =
       !name.empty() && name.size() <= kLongestName && is_letter_or_digit(name.front()) &&
       std::ranges::all_of(name, [](char c) { return is_letter_or_digit(c) || c == '.' || c == '_' || c == '-'; });
-  static constexpr std::array<std::pair<std::string_view, FileKind>, 7> kEndings = {
+  static constexpr std::array<std::pair<std::string_view, FileKind>, 8> kEndings = {
       {{".yaml", FileKind::Scenario},
        {".program.csv", FileKind::Program},
        {".csv", FileKind::Items},
        {".jsonl", FileKind::Log},
        {".txt", FileKind::Words},
        {".h5", FileKind::Recording},
-       {".html", FileKind::Report}}};
+       {".html", FileKind::Report},
+       {".live", FileKind::Live}}};
   for (const auto& [ending, kind] : kEndings) {
     if (is_plain && name.ends_with(ending)) return kind;
   }
@@ -119,13 +120,13 @@ std::vector<Entry> Folder::list() const {
   return entries;
 }
 
-std::string Folder::read_from(const std::string& name, std::uintmax_t offset) const {
+std::string Folder::read_from(const std::string& name, std::uintmax_t offset, std::size_t most) const {
   const FileKind kind = kind_of_name(name);
   const bool is_written_here = kind == FileKind::Scenario || kind == FileKind::Items;
   struct stat status {};
   const Descriptor file = open_file(folder_.get(), name, is_written_here ? kLargestUpload : kLargestRead, status);
   const auto size = static_cast<std::uintmax_t>(status.st_size);
-  std::string text(static_cast<std::size_t>(size - std::min(size, offset)), '\0');
+  std::string text(std::min(most, static_cast<std::size_t>(size - std::min(size, offset))), '\0');
   std::size_t done = 0;
   while (done < text.size()) {  // a log that grows meanwhile is read up to where it was
     const ssize_t count =
@@ -137,6 +138,12 @@ std::string Folder::read_from(const std::string& name, std::uintmax_t offset) co
   }
   text.resize(done);
   return text;
+}
+
+bool Folder::has(const std::string& name) const {
+  (void)kind_of_name(name);
+  struct stat status {};
+  return ::fstatat(folder_.get(), name.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(status.st_mode);
 }
 
 std::uintmax_t Folder::size(const std::string& name) const {

@@ -25,6 +25,7 @@ enum class FileKind {
   Recording,  ///< NAME.h5
   Program,    ///< NAME.program.csv
   Report,     ///< NAME.html
+  Live,       ///< NAME.live, frames that `snug pack --live` writes
 };
 
 struct Entry {
@@ -50,8 +51,11 @@ class Folder {
   [[nodiscard]] std::vector<Entry> list() const;
   /// Throws InputError for a name that is refused, and for what is no regular file of a bounded size.
   [[nodiscard]] std::string read(const std::string& name) const { return read_from(name, 0); }
-  /// What lies behind the first `offset` bytes; empty where there are not so many.
-  [[nodiscard]] std::string read_from(const std::string& name, std::uintmax_t offset) const;
+  /// What lies behind the first `offset` bytes; empty where there are not so many; at most `most`.
+  [[nodiscard]] std::string read_from(const std::string& name, std::uintmax_t offset,
+                                      std::size_t most = kLargestRead) const;
+  /// Whether there is a regular file of that name.
+  [[nodiscard]] bool has(const std::string& name) const;
   [[nodiscard]] std::uintmax_t size(const std::string& name) const;
   /// Scenario or items, read as the command line reads them before anything is written; then in one step in the place
   /// of what was there. Throws InputError: with file, line and key for a text that cannot be used; for a log; for a

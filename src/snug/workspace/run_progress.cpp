@@ -1,12 +1,27 @@
 // RunProgress: how far a run has come, by the log of events that `snug pack --log` writes while it goes on.
 #include "snug/workspace/run_progress.hpp"
 
+#include <algorithm>
+#include <array>
 #include <variant>
 
 #include "snug/core/text.hpp"
 
 namespace snug::workspace {
 namespace {
+
+/// Of events that ProgressFold makes nothing of.
+constexpr std::array<std::string_view, 12> kPassedOver = {
+    "stepped",        "item brought", "perceived",  "planned",  "plan dropped", "sent",
+    "motion started", "motion ended", "send ended", "assessed", "remedied",     "repacked"};
+
+/// Of a line as format_event() writes it.
+bool is_passed_over(std::string_view line) {
+  constexpr std::string_view kBegin = "{\"event\":\"";
+  if (!line.starts_with(kBegin) || !line.ends_with('}')) return false;
+  const std::string_view kind = line.substr(kBegin.size(), line.find('"', kBegin.size()) - kBegin.size());
+  return std::ranges::find(kPassedOver, kind) != kPassedOver.end();
+}
 
 bool is_lost(session::ItemEnd end) { return end == session::ItemEnd::Left || end == session::ItemEnd::Gone; }
 
@@ -45,12 +60,18 @@ RunProgress ProgressFold::progress() const {
 void LogReader::read(const Folder& folder, const std::string& name) {
   if (folder.size(name) < offset_) *this = {};  // begun anew
   const std::string text = folder.read_from(name, offset_);
+  bool is_new = false;
   for (std::size_t begin = 0, end = 0; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
     const std::string_view line = std::string_view(text).substr(begin, end - begin);
-    check_utf8(line, name);
-    fold_.add(session::parse_event(line, name, ++lines_));
+    ++lines_;
+    if (!is_passed_over(line)) {
+      check_utf8(line, name);
+      fold_.add(session::parse_event(line, name, lines_));
+      is_new = true;
+    }
     offset_ += line.size() + 1;
   }
+  if (is_new) progress_ = fold_.progress();
 }
 
 RunProgress progress_of(const session::EventLog& log) {

@@ -47,18 +47,20 @@ class ProgressFold {
   session::ResultFold fold_;
 };
 
-/// A log that grows: reads only what is new.
+/// A log that grows: reads only what is new. Lines of events that say nothing of the progress (motions, plans with all
+/// that was tried: nine tenths of a log) are passed over by their kind, unread.
 class LogReader {
  public:
   /// Throws InputError for whole lines that are no events.
   void read(const Folder& folder, const std::string& name);
   [[nodiscard]] std::uintmax_t offset() const { return offset_; }
-  [[nodiscard]] RunProgress progress() const { return fold_.progress(); }
+  [[nodiscard]] const RunProgress& progress() const { return progress_; }
 
  private:
   std::uintmax_t offset_ = 0;  ///< behind the last whole line
   int lines_ = 0;
   ProgressFold fold_;
+  RunProgress progress_;  ///< that of the fold
 };
 
 [[nodiscard]] RunProgress progress_of(const session::EventLog& log);

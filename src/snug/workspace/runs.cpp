@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::size_t kLongestWord = 200;      // bytes
 constexpr std::chrono::seconds kPatience(10);  // for a process that was interrupted
-constexpr std::array<const char*, 5> kEndings = {".txt", ".jsonl", ".h5", ".program.csv", ".html"};
+constexpr std::array<const char*, 6> kEndings = {".txt", ".jsonl", ".h5", ".program.csv", ".html", ".live"};
 
 void require_kind(const std::string& name, FileKind kind, const char* key, const char* expected) {
   if (kind_of_name(name) != kind) throw InputError("run", key, name, expected);
@@ -57,6 +57,15 @@ bool is_locked(const Folder& folder, const std::string& file) {
   return opened.is_open() && ::flock(opened.get(), LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
 }
 
+/// Frames for who watched: the recording has them all.
+void drop_live(const Folder& folder, const std::string& name) {
+  struct stat status {};
+  const auto is_there = [&](const std::string& file) {
+    return ::fstatat(folder.descriptor(), file.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(status.st_mode);
+  };
+  if (is_there(name + ".h5") && is_there(name + ".live")) ::unlinkat(folder.descriptor(), (name + ".live").c_str(), 0);
+}
+
 /// The last line that begins with "snug: ", without that.
 std::string find_message(const std::string& text) {
   const std::size_t at = text.rfind("\nsnug: ");
@@ -81,6 +90,8 @@ const char* name_of(RunState state) {
       return "ended early";
     case RunState::NotStarted:
       return "not started";
+    case RunState::Unread:
+      return "being read";
   }
   return "";
 }
@@ -113,6 +124,7 @@ std::vector<std::string> command_of(const RunRequest& request) {
   if (request.threads > 0) add("--threads", std::to_string(request.threads));
   if (!request.resumes.empty()) add("--resume", request.resumes + ".jsonl");
   add("--log", request.name + ".jsonl");
+  add("--live", request.name + ".live");
   add("--program", request.name + ".program.csv");
   add("-o", request.name + ".h5");
   return words;
@@ -152,6 +164,8 @@ Runs::~Runs() {
   }
   lock.unlock();
   for (std::thread& worker : workers_) worker.join();
+  const std::lock_guard background(background_mutex_);
+  if (background_.joinable()) background_.join();
 }
 
 void Runs::start(const RunRequest& request) {
@@ -170,7 +184,10 @@ void Runs::start(const RunRequest& request) {
   (void)::flock(job.output.get(), LOCK_EX | LOCK_NB);  // nobody else knows of it yet
   print_to(job.output.get(), "$ " + as_shell_line(job.words) + "\n");
   jobs_.emplace(request.name, std::move(job));
-  logs_.erase(request.name);
+  {
+    const std::lock_guard logs(logs_mutex_);
+    logs_.erase(request.name);
+  }
   waiting_.push_back(request.name);
   changed_.notify_all();
 }
@@ -185,7 +202,8 @@ void Runs::work() {
     const auto node = jobs_.extract(name);
     processes_[name] = 0;  // 0: about to be started
     lock.unlock();
-    (void)run(node.mapped().words, node.mapped().output.get(), name);
+    const int code = run(node.mapped().words, node.mapped().output.get(), name);
+    if (code == 0) drop_live(folder_, name);
     lock.lock();
     processes_.erase(name);
     interrupts_.erase(name);
@@ -250,18 +268,39 @@ void Runs::remove(const std::string& name) {
   if (now.state == RunState::Running || now.state == RunState::Waiting)
     throw InputError("run", "name", name, "a run that is over: stop it first");
   for (const std::string& file : now.files) folder_.remove(file);
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard lock(logs_mutex_);
   logs_.erase(name);
 }
 
-RunProgress Runs::progress_of(const std::string& name) {
-  const std::lock_guard lock(mutex_);
+std::optional<RunProgress> Runs::progress_of(const std::string& name, bool reads) {
+  const std::lock_guard lock(logs_mutex_);
+  if (!reads && !logs_.contains(name)) return std::nullopt;
   LogReader& reader = logs_[name];
   reader.read(folder_, name + ".jsonl");
   return reader.progress();
 }
 
-std::optional<RunStatus> Runs::look(const std::string& name, const std::vector<std::string>& files) {
+void Runs::read_in_background(std::vector<std::string> names) {
+  const std::lock_guard lock(background_mutex_);
+  if (is_ending_ || is_reading_) return;
+  if (background_.joinable()) background_.join();
+  is_reading_ = true;
+  background_ = std::thread([this, names = std::move(names)] {
+    for (const std::string& name : names) {
+      if (is_ending_) break;
+      LogReader reader;  // no lock while it reads: lists are answered meanwhile
+      try {
+        reader.read(folder_, name + ".jsonl");
+      } catch (const std::exception&) {  // whoever looks at this run hears it: as far as it can be read
+      }
+      const std::lock_guard logs(logs_mutex_);
+      logs_.try_emplace(name, std::move(reader));
+    }
+    is_reading_ = false;
+  });
+}
+
+std::optional<RunStatus> Runs::look(const std::string& name, const std::vector<std::string>& files, bool reads) {
   RunStatus status;
   status.name = name;
   status.files = files;
@@ -283,7 +322,14 @@ std::optional<RunStatus> Runs::look(const std::string& name, const std::vector<s
     } else {
       std::erase(status.files, name + ".txt");  // somebody's notes
     }
-    if (has(".jsonl")) status.progress = progress_of(name);
+    if (has(".jsonl")) {
+      std::optional<RunProgress> progress = progress_of(name, reads);
+      if (!progress) {
+        if (!status.can_be_stopped && !is_held) status.state = RunState::Unread;
+        return status;
+      }
+      status.progress = *std::move(progress);
+    }
   } catch (const InputError& error) {
     if (!status.can_be_stopped && !is_held) status.state = RunState::Failed;
     status.message = error.what();
@@ -334,11 +380,17 @@ RunStatus Runs::status(const std::string& name) {
   return *std::move(status);
 }
 
-std::vector<RunStatus> Runs::list() {
+std::vector<RunStatus> Runs::list(std::chrono::milliseconds patience) {
+  const auto begin = std::chrono::steady_clock::now();
   std::vector<RunStatus> all;
+  std::vector<std::string> unread;
   for (const auto& [name, files] : find_runs(folder_)) {
-    if (std::optional<RunStatus> status = look(name, files)) all.push_back(*std::move(status));
+    std::optional<RunStatus> status = look(name, files, std::chrono::steady_clock::now() - begin < patience);
+    if (!status) continue;
+    if (status->state == RunState::Unread) unread.push_back(name);
+    all.push_back(*std::move(status));
   }
+  if (!unread.empty()) read_in_background(std::move(unread));
   return all;
 }
 

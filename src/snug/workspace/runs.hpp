@@ -1,6 +1,8 @@
 // Runs: commands `snug pack` as processes of their own, started, watched and stopped; what they leave is in the folder.
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -46,6 +48,7 @@ enum class RunState {
   Failed,      ///< it ended without packing, see RunStatus::message
   Ended,       ///< before its end: it was killed, and can be resumed
   NotStarted,  ///< whoever had it waiting has ended
+  Unread,      ///< its log has not been read yet: ask again
 };
 [[nodiscard]] const char* name_of(RunState state);
 
@@ -80,8 +83,9 @@ class Runs {
   void remove(const std::string& name);
   /// Throws InputError where there is no run of that name.
   [[nodiscard]] RunStatus status(const std::string& name);
-  /// By name. A run that cannot be read has its state Failed and says why.
-  [[nodiscard]] std::vector<RunStatus> list();
+  /// By name. A run that cannot be read has its state Failed and says why. Logs are read for `patience` at most; those
+  /// of the rest are Unread and read in the background.
+  [[nodiscard]] std::vector<RunStatus> list(std::chrono::milliseconds patience = std::chrono::hours(1));
   /// Makes NAME.html of NAME.h5 with `snug report`, unless it is there and newer. Throws InputError with what the
   /// command said.
   void make_report(const std::string& name);
@@ -94,9 +98,13 @@ class Runs {
   void work();
   /// Runs the words in the folder; their exit code, 128 and more for a signal.
   int run(const std::vector<std::string>& words, int output, const std::string& name);
-  /// Nothing where the files are those of no run.
-  [[nodiscard]] std::optional<RunStatus> look(const std::string& name, const std::vector<std::string>& files);
-  [[nodiscard]] RunProgress progress_of(const std::string& name);
+  /// Nothing where the files are those of no run. `reads`: whether it may read a log that nobody has read.
+  [[nodiscard]] std::optional<RunStatus> look(const std::string& name, const std::vector<std::string>& files,
+                                              bool reads = true);
+  /// Nothing where nobody has read the log and it may not be read.
+  [[nodiscard]] std::optional<RunProgress> progress_of(const std::string& name, bool reads);
+  /// Reads the logs of these runs in a thread of its own.
+  void read_in_background(std::vector<std::string> names);
 
   const Folder& folder_;
   const std::filesystem::path program_;
@@ -106,9 +114,13 @@ class Runs {
   std::map<std::string, Job> jobs_;         ///< those that wait
   std::map<std::string, pid_t> processes_;  ///< those that run
   std::map<std::string, int> interrupts_;   ///< how often they were told to stop
-  std::map<std::string, LogReader> logs_;
-  bool is_ending_ = false;
+  std::atomic<bool> is_ending_ = false;
   std::vector<std::thread> workers_;
+  std::mutex logs_mutex_;
+  std::map<std::string, LogReader> logs_;
+  std::mutex background_mutex_;
+  std::thread background_;  ///< reads logs
+  std::atomic<bool> is_reading_ = false;
 };
 
 }  // namespace snug::workspace

@@ -5,9 +5,11 @@
 #include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <set>
 #include <thread>
 
+#include "snug/core/base64.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/json_value.hpp"
 #include "snug/core/output_file.hpp"
@@ -15,7 +17,10 @@
 #include "snug/core/read_file.hpp"
 #include "snug/core/text.hpp"
 #include "snug/model/items_file.hpp"
+#include "snug/model/pose_edit.hpp"
 #include "snug/model/scenario.hpp"
+#include "snug/replay/cell_form.hpp"
+#include "snug/runs/reach_map.hpp"
 
 namespace snug::workspace {
 namespace {
@@ -26,7 +31,13 @@ using serve::ApiRequest;
 
 constexpr std::string_view kRoot = "/api/1/";
 constexpr std::size_t kLargestJson = std::size_t{64} << 10U;
-constexpr std::chrono::milliseconds kBetweenLooks(250);  // at a log that grows
+constexpr std::chrono::milliseconds kBetweenLooks(250);     // at a log that grows
+constexpr std::chrono::milliseconds kBetweenFrames(30);     // at frames that are watched
+constexpr std::chrono::milliseconds kListPatience(40);      // for reading logs that nobody has read
+constexpr std::size_t kMostFrames = std::size_t{2} << 20U;  // bytes of frames in one piece
+constexpr std::size_t kMostMoves = 100;
+constexpr double kDegreesARadian = 180.0 / std::numbers::pi;
+constexpr std::size_t kLargestMove = kLargestUpload + (std::size_t{64} << 10U);
 /// A report has its scripts within it: it may run them, but has no address of its own, and reaches nothing.
 constexpr const char* kReportPolicy =
     "sandbox allow-scripts allow-downloads allow-popups; default-src 'none'; script-src 'unsafe-inline' blob: data:; "
@@ -54,17 +65,23 @@ Json as_json(const InputError& error) {
       {"expected", printable(error.expected, kLongestMessage)}, {"text", printable(error.what(), 4 * kLongestMessage)}};
 }
 
-Json as_json(const RunStatus& status) {
+/// Without its boxes.
+Json summary_of(const RunStatus& status) {
   const RunProgress& progress = status.progress;
-  Json boxes = Json::array();
-  for (const BoxProgress& box : progress.boxes)
-    boxes.push_back({{"id", box.id}, {"end", box.end}, {"reason", box.reason}, {"packed", box.is_packed}});
   return {{"name", status.name},       {"state", name_of(status.state)}, {"can_be_stopped", status.can_be_stopped},
           {"command", status.command}, {"message", status.message},      {"sequence", progress.sequence},
           {"plant", progress.plant},   {"items", progress.items},        {"done", progress.done},
           {"packed", progress.packed}, {"lost", progress.lost},          {"percent", progress.planned_percent},
-          {"time", progress.time},     {"stopped", progress.stopped},    {"boxes", std::move(boxes)},
-          {"files", status.files}};
+          {"time", progress.time},     {"stopped", progress.stopped},    {"files", status.files}};
+}
+
+Json as_json(const RunStatus& status) {
+  Json json = summary_of(status);
+  Json boxes = Json::array();
+  for (const BoxProgress& box : status.progress.boxes)
+    boxes.push_back({{"id", box.id}, {"end", box.end}, {"reason", box.reason}, {"packed", box.is_packed}});
+  json["boxes"] = std::move(boxes);
+  return json;
 }
 
 Json in_mm(const Vector3& size) { return {1e3 * size.x(), 1e3 * size.y(), 1e3 * size.z()}; }
@@ -96,6 +113,19 @@ Json facts_of(FileKind kind, const std::string& text, const std::string& name) {
           {"cup_radius_mm", 1e3 * scenario.cup.lip_radius}};
 }
 
+/// Of a template; the robot's file is named where it lies, not beside the text.
+std::string text_of(const Template& one) {
+  std::string text = read_file(one.file, "a scenario to begin with");
+  constexpr std::string_view kRobot = "\n  urdf: robots/";
+  const std::size_t at = text.find(kRobot);
+  if (at == std::string::npos) return text;
+  const std::size_t begin = at + kRobot.find("robots/");
+  const std::size_t end = std::min(text.find_first_of(" \r\n#", begin), text.size());
+  const std::filesystem::path file =
+      std::filesystem::absolute(one.file).parent_path() / text.substr(begin, end - begin);
+  return text.replace(begin, end - begin, "\"" + file.string() + "\"");
+}
+
 /// A member of an object; throws InputError for another type.
 template <class T>
 T member(const Json& json, const char* key, T otherwise) {
@@ -108,8 +138,9 @@ T member(const Json& json, const char* key, T otherwise) {
   return found->template get<T>();
 }
 
-Json parse_object(const std::string& body) {
-  if (body.size() > kLargestJson) throw InputError("request", "", "more than 64 kB", "a small JSON object");
+Json parse_object(const std::string& body, std::size_t most = kLargestJson) {
+  if (body.size() > most)
+    throw InputError("request", "", "more than " + std::to_string(most) + " bytes", "a small JSON object");
   if (!is_shallow_json(body))
     throw InputError("request", "", "lists or objects that are too deep", "a small JSON object");
   Json json = Json::parse(body, nullptr, false);
@@ -158,11 +189,14 @@ ApiAnswer Service::route(const ApiRequest& request) {
   if (parts.size() == 2 && what == "files") return answer_file(request, name);
   if (parts.size() == 2 && what == "facts" && is_get) return answer_check(name, folder_.read(name));
   if (parts.size() == 2 && what == "check" && is_post) return answer_check(name, request.body);
+  if (parts.size() == 2 && what == "scene" && is_post) return answer_scene(name, request.body);
+  if (parts.size() == 2 && what == "reach" && is_post) return answer_reach(name, request.body);
+  if (parts.size() == 2 && what == "move" && is_post) return answer_move(name, request.body);
   if (parts.size() == 2 && what == "runs") return answer_run(request, name, "");
   if (parts.size() == 3 && what == "runs") return answer_run(request, name, parts[2]);
   if (parts.size() == 2 && what == "templates" && is_get) {
     for (const Template& one : settings_.templates) {
-      if (one.name == name) return as_answer({{"text", read_file(one.file, "a scenario to begin with")}});
+      if (one.name == name) return as_answer({{"text", text_of(one)}});
     }
   }
   return refusal(404, "there is no such address: docs/ui.md lists them");
@@ -174,11 +208,7 @@ ApiAnswer Service::answer_folder() {
     if (entry.kind == FileKind::Scenario) scenarios.push_back({{"name", entry.name}, {"bytes", entry.bytes}});
     if (entry.kind == FileKind::Items) items.push_back({{"name", entry.name}, {"bytes", entry.bytes}});
   }
-  for (const RunStatus& status : runs_.list()) {
-    Json run = as_json(status);
-    run.erase("boxes");
-    runs.push_back(std::move(run));
-  }
+  for (const RunStatus& status : runs_.list(kListPatience)) runs.push_back(summary_of(status));
   for (const Template& one : settings_.templates)
     templates.push_back({{"name", one.name}, {"description", one.description}});
   return as_answer({{"folder", printable_end(folder_.path().string(), kLongestMessage)},
@@ -221,6 +251,61 @@ ApiAnswer Service::answer_check(const std::string& name, const std::string& text
   }
 }
 
+/// Throws InputError as Folder::check, in whose words mistakes are told.
+model::Scenario Service::read_cell(const std::string& name, const std::string& text) const {
+  if (kind_of_name(name) != FileKind::Scenario) throw InputError("name", "", name, "a name that ends in .yaml");
+  folder_.check(name, text);
+  return model::parse_scenario(text, (folder_.path() / name).string());
+}
+
+/// What is drawn and can be moved.
+ApiAnswer Service::answer_scene(const std::string& name, const std::string& text) const {
+  const model::Scenario scenario = read_cell(name, text);
+  Json parts = Json::array();
+  for (const model::CellPart& part : model::find_parts(scenario))
+    parts.push_back({{"key", part.key},
+                     {"name", part.name},
+                     {"position_mm", in_mm(part.X_W.p)},
+                     {"yaw_deg", model::yaw_about_vertical(part.X_W.R) * kDegreesARadian}});
+  return as_answer({{"parts", std::move(parts)},
+                    {"has_robot", scenario.robot.has_value()},
+                    {"form", base64(replay::encode_cell(scenario))}});
+}
+
+ApiAnswer Service::answer_reach(const std::string& name, const std::string& text) const {
+  ApiAnswer answer;
+  answer.body = runs::format_json(runs::make_reach_map(read_cell(name, text), core_count()));
+  return answer;
+}
+
+/// The text with parts of the cell moved; whether it can be used is another question.
+ApiAnswer Service::answer_move(const std::string& name, const std::string& body) const {
+  const Json json = parse_object(body, kLargestMove);
+  for (const auto& [key, value] : json.items())
+    if (key != "text" && key != "moves") throw InputError("request", printable(key, 40), "", "text or moves");
+  const auto moves = json.find("moves");
+  if (moves == json.end() || !moves->is_array() || moves->size() > kMostMoves)
+    throw InputError("request", "moves", "", "a list of at most " + std::to_string(kMostMoves));
+  std::vector<model::PoseEdit> edits;
+  for (const Json& move : *moves) {
+    if (!move.is_object()) throw InputError("request", "moves", printable(text_of(move), 40), "objects");
+    for (const auto& [key, value] : move.items())
+      if (key != "key" && key != "position_mm" && key != "yaw_deg")
+        throw InputError("request", printable(key, 40), "", "key, position_mm or yaw_deg");
+    model::PoseEdit edit;
+    edit.key = printable(member(move, "key", std::string()), kLongestMessage);
+    const auto position = move.find("position_mm");
+    const bool is_position = position != move.end() && position->is_array() && position->size() == 3 &&
+                             std::ranges::all_of(*position, [](const Json& one) { return one.is_number(); });
+    if (!is_position) throw InputError("request", "position_mm", "", "three numbers");
+    for (int i = 0; i < 3; ++i) edit.p_W[i] = 1e-3 * (*position)[static_cast<std::size_t>(i)].get<double>();
+    edit.yaw = member(move, "yaw_deg", 0.0) / kDegreesARadian;
+    edits.push_back(std::move(edit));
+  }
+  const model::Scenario scenario = read_cell(name, member(json, "text", std::string()));
+  return as_answer({{"text", model::move_parts(scenario, edits)}});
+}
+
 ApiAnswer Service::answer_run(const ApiRequest& request, const std::string& name, const std::string& part) {
   const bool is_get = request.method == "GET";
   if (part.empty() && is_get) return as_answer(as_json(runs_.status(name)));
@@ -229,6 +314,7 @@ ApiAnswer Service::answer_run(const ApiRequest& request, const std::string& name
     return as_answer({{"removed", name}});
   }
   if (part == "events" && is_get) return watch(name);
+  if (part == "live" && is_get) return watch_frames(name);
   if (part == "stop" && request.method == "POST") {
     if (!runs_.stop(name))
       return refusal(409, "this run is none of this program: it is over, or another program started it");
@@ -299,6 +385,41 @@ ApiAnswer Service::watch(const std::string& name) {
       return "event: status\ndata: " + text + "\n\n";
     } catch (const std::exception&) {
       return std::nullopt;  // it was removed
+    }
+  };
+  return answer;
+}
+
+/// What `snug pack --live` writes, from its beginning and as it grows; `over` when no more comes.
+ApiAnswer Service::watch_frames(const std::string& name) {
+  (void)runs_.status(name);
+  ApiAnswer answer;
+  const auto offset = std::make_shared<std::uintmax_t>(0);
+  const auto is_over = std::make_shared<bool>(false);
+  const auto next_look = std::make_shared<std::chrono::steady_clock::time_point>();
+  answer.next = [this, name, offset, is_over, next_look]() -> std::optional<std::string> {
+    if (*is_over) return std::nullopt;
+    const auto over = [&] {
+      *is_over = true;
+      return std::optional<std::string>("event: over\ndata: {}\n\n");
+    };
+    try {
+      std::string text = folder_.has(name + ".live") ? folder_.read_from(name + ".live", *offset, kMostFrames) : "";
+      const std::size_t end = text.rfind("\n\n");
+      text.resize(end == std::string::npos ? 0 : end + 2);
+      *offset += text.size();
+      if (!text.empty()) return text;
+      const auto now = std::chrono::steady_clock::now();
+      if (now < *next_look) {
+        std::this_thread::sleep_for(kBetweenFrames);
+        return std::string();
+      }
+      *next_look = now + kBetweenLooks;
+      const RunState state = runs_.status(name).state;
+      if (state != RunState::Running && state != RunState::Waiting) return over();
+      return std::string();
+    } catch (const std::exception&) {
+      return over();  // it was removed
     }
   };
   return answer;

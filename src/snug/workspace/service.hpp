@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "snug/model/scenario.hpp"
 #include "snug/serve/api_server.hpp"
 #include "snug/workspace/folder.hpp"
 #include "snug/workspace/runs.hpp"
@@ -40,10 +41,15 @@ class Service {
   [[nodiscard]] serve::ApiAnswer answer_folder();
   [[nodiscard]] serve::ApiAnswer answer_file(const serve::ApiRequest& request, const std::string& name);
   [[nodiscard]] serve::ApiAnswer answer_check(const std::string& name, const std::string& text);
+  [[nodiscard]] model::Scenario read_cell(const std::string& name, const std::string& text) const;
+  [[nodiscard]] serve::ApiAnswer answer_scene(const std::string& name, const std::string& text) const;
+  [[nodiscard]] serve::ApiAnswer answer_reach(const std::string& name, const std::string& text) const;
+  [[nodiscard]] serve::ApiAnswer answer_move(const std::string& name, const std::string& body) const;
   [[nodiscard]] serve::ApiAnswer answer_run(const serve::ApiRequest& request, const std::string& name,
                                             const std::string& part);
   [[nodiscard]] serve::ApiAnswer start_runs(const std::string& body, bool starts);
   [[nodiscard]] serve::ApiAnswer watch(const std::string& name);
+  [[nodiscard]] serve::ApiAnswer watch_frames(const std::string& name);
 
   const ServiceSettings settings_;
   const Folder folder_;

@@ -86,6 +86,31 @@ TEST(RunProgress, IsRefusedWithTheLineOfWhatIsNoEvent) {
   }
 }
 
+// Motions and plans make up most of a log: they are passed over, and nothing is missed.
+TEST(LogReader, PassesOverWhatSaysNothingOfTheProgress) {
+  namespace event = session::event;
+  const test::ScratchFolder scratch;
+  const Folder folder(scratch.path());
+  session::EventLog log;
+  for (const session::SessionEvent& one : small_log().events) {
+    log.events.push_back(one);
+    if (log.events.size() == 1) continue;
+    event::Stepped stepped;
+    stepped.item = model::ItemIndex(0);
+    log.events.emplace_back(stepped);
+    log.events.emplace_back(event::Perceived{});
+    log.events.emplace_back(event::MotionStarted{});
+  }
+  std::string text;
+  for (const session::SessionEvent& one : log.events) text += session::format_event(one) + "\n";
+  std::ofstream(scratch / "a.jsonl") << text;
+  LogReader reader;
+  reader.read(folder, "a.jsonl");
+  EXPECT_EQ(reader.progress(), progress_of(log));
+  EXPECT_EQ(reader.progress(), progress_of(small_log()));
+  EXPECT_EQ(reader.offset(), text.size());
+}
+
 // Read piece by piece, as it grows, it is the same as read at once.
 TEST(LogReader, IsTheSameInPiecesAndBeginsAgainWithAShorterFile) {
   const test::ScratchFolder scratch;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <fstream>
@@ -32,6 +33,7 @@ done
 echo '{"event":"session started","sequence":"mine","agent":"a","plant":"p","items":["A","B"],"places_are_chosen":false,"tracking":{"kind":"fast","tempo":1.0}}' > "$log"
 case "$sequence" in
   killed) kill -9 $$;;
+  recorded) echo x > a.live; echo x > a.h5;;
   wrong) rm "$log"; echo "snug: wrong words"; exit 2;;
   waits) trap 'echo "snug: interrupted"; echo "{\"event\":\"session ended\",\"time\":1.0,\"failure\":\"none\",\"text\":\"\"}" >> "$log"; exit 1' INT; while true; do sleep 0.02; done;;
   deaf) trap '' INT; while true; do sleep 0.02; done;;
@@ -78,8 +80,8 @@ TEST_F(RunsTest, StartTheCommandThatIsShownInTheFolder) {
   ASSERT_TRUE(reaches(runs, "a", RunState::Done));
   const RunStatus status = runs.status("a");
   EXPECT_EQ(status.command,
-            "snug pack cell.yaml --sequence 'it'\\''s $(mine)' --plant-seed 0 --tempo 0.85 --log a.jsonl --program "
-            "a.program.csv -o a.h5");
+            "snug pack cell.yaml --sequence 'it'\\''s $(mine)' --plant-seed 0 --tempo 0.85 --log a.jsonl --live a.live "
+            "--program a.program.csv -o a.h5");
   const std::string said = read_file(cells_ / "a.txt", "what it printed");
   EXPECT_NE(said.find("in " + fs::canonical(cells_).string() + "\n<pack>\n<cell.yaml>\n<--sequence>\n<it's $(mine)>\n"),
             std::string::npos)
@@ -145,6 +147,42 @@ TEST_F(RunsTest, AreInterruptedWhenTheirOwnerEnds) {
   EXPECT_EQ(after.status("a").state, RunState::Done);
   EXPECT_EQ(after.status("b").state, RunState::NotStarted);
   EXPECT_NE(after.status("b").command, "");
+}
+
+TEST_F(RunsTest, AreListedAtOnceAndReadInTheBackground) {
+  for (int i = 0; i < 20; ++i) {
+    std::ofstream(cells_ / ("r" + std::to_string(i) + ".jsonl"))
+        << R"({"event":"session started","sequence":"mine","agent":"a","plant":"p","items":["A"],)"
+        << R"("places_are_chosen":false,"tracking":{"kind":"fast","tempo":1.0}})"
+        << "\n"
+        << R"({"event":"session ended","time":1.0,"failure":"none","text":""})"
+        << "\n";
+    std::ofstream(cells_ / ("r" + std::to_string(i) + ".txt")) << "$ snug pack cell.yaml\n";
+  }
+  Runs runs(*folder_, program_, 1);
+  const std::vector<RunStatus> first = runs.list(milliseconds(0));
+  ASSERT_EQ(first.size(), 20U);
+  for (const RunStatus& one : first) EXPECT_EQ(one.state, RunState::Unread);
+  EXPECT_EQ(first.front().command, "snug pack cell.yaml");
+  EXPECT_TRUE(wait_until([&] {
+    return std::ranges::all_of(runs.list(milliseconds(0)),
+                               [](const RunStatus& one) { return one.state == RunState::Done; });
+  }));
+  EXPECT_EQ(runs.status("r0").progress.items, 1);  // who asks for one gets it at once
+}
+
+TEST_F(RunsTest, LeaveNoFramesBesideTheirRecording) {
+  Runs runs(*folder_, program_, 1);
+  runs.start(request("a", "recorded"));
+  ASSERT_TRUE(reaches(runs, "a", RunState::Done));
+  EXPECT_TRUE(wait_until([&] { return !fs::exists(cells_ / "a.live"); }));
+  EXPECT_TRUE(fs::exists(cells_ / "a.h5"));
+  runs.start(request("k", "killed"));  // no recording: the frames are what there is
+  std::ofstream(cells_ / "k.live") << "x";
+  ASSERT_TRUE(reaches(runs, "k", RunState::Ended));
+  EXPECT_TRUE(fs::exists(cells_ / "k.live"));
+  runs.remove("k");
+  EXPECT_FALSE(fs::exists(cells_ / "k.live"));
 }
 
 TEST_F(RunsTest, MakeReportsOfRecordingsAndSayWhyNot) {

@@ -82,7 +82,8 @@ TEST_F(ServiceTest, ShowsCommandsAndStartsThemOncePerPlant) {
   EXPECT_TRUE(json("GET", "folder")["runs"].empty());
   EXPECT_EQ(json("POST", "runs", request, 201), shown);
   EXPECT_EQ(shown["runs"][1]["command"],
-            "snug pack a.yaml --sequence first --plant-seed 8 --threads 1 --log r-2.jsonl --program r-2.program.csv -o "
+            "snug pack a.yaml --sequence first --plant-seed 8 --threads 1 --log r-2.jsonl --live r-2.live --program "
+            "r-2.program.csv -o "
             "r-2.h5");
   EXPECT_EQ(json("GET", "runs/r-2")["command"], shown["runs"][1]["command"]);
   const serve::ApiAnswer events = ask("GET", "runs/r-1/events");
@@ -91,6 +92,68 @@ TEST_F(ServiceTest, ShowsCommandsAndStartsThemOncePerPlant) {
   int pieces = 0;
   while (events.next() && pieces < 50) ++pieces;
   EXPECT_LT(pieces, 50);  // the stream ends with the run
+}
+
+TEST_F(ServiceTest, MovesPartsInTheTextAndShowsThem) {
+  const Json moved = json(
+      "POST", "move/a.yaml",
+      Json{{"text", cell_}, {"moves", {{{"key", "containers.tote"}, {"position_mm", {500, 0, 20}}, {"yaw_deg", 0}}}}}
+          .dump());
+  const std::string text = moved["text"];
+  EXPECT_NE(text.find("{name: tote, pose: {position: [0.5, 0.0, 0.02]}"), std::string::npos);
+  EXPECT_NE(text.find("# What is packed into"), std::string::npos);
+  const Json scene = json("POST", "scene/a.yaml", text);
+  EXPECT_EQ(scene["parts"][0]["key"], "containers.tote");
+  EXPECT_NEAR(scene["parts"][0]["position_mm"][0].get<double>(), 500.0, 1e-9);
+  EXPECT_GT(scene["form"].get<std::string>().size(), 100U);
+  EXPECT_FALSE(scene["has_robot"].get<bool>());
+  EXPECT_EQ(json("POST", "reach/a.yaml", text, 422)["mistake"]["key"], "robot");
+  // Into the bench: the text is given, its mistake is told when it is asked for.
+  const Json below = json(
+      "POST", "move/a.yaml",
+      Json{{"text", cell_}, {"moves", {{{"key", "containers.tote"}, {"position_mm", {500, 0, 0}}, {"yaw_deg", 0}}}}}
+          .dump());
+  EXPECT_NE(json("POST", "check/a.yaml", below["text"].get<std::string>())["mistake"], nullptr);
+  EXPECT_EQ(ask("POST", "scene/a.yaml", below["text"].get<std::string>()).status, 422);
+  for (const char* body : {"{}", "[]", "{\"text\":\"\"}", "{\"text\":1,\"moves\":[]}", "{\"text\":\"x\",\"moves\":[1]}",
+                           "{\"text\":\"x\",\"moves\":[{\"key\":\"robot\"}]}", "{\"moves\":[],\"more\":1}",
+                           "{\"text\":\"x\",\"moves\":[{\"key\":\"robot\",\"position_mm\":[1,2]}]}",
+                           "{\"text\":\"x\",\"moves\":[{\"key\":\"robot\",\"position_mm\":[1e999,2,3]}]}"}) {
+    EXPECT_EQ(ask("POST", "move/a.yaml", body).status, 422) << body;
+  }
+  for (const char* path : {"scene/a.csv", "reach/a.csv", "move/..", "scene/link"})
+    EXPECT_EQ(ask("POST", path, cell_).status, 422) << path;
+  EXPECT_EQ(ask("GET", "scene/a.yaml").status, 404);
+}
+
+TEST_F(ServiceTest, ShowsWhatTheDemonstratorReaches) {
+  const fs::path file = fs::path(SNUG_SOURCE_DIR) / "scenarios/box-demonstrator.yaml";
+  Service service({cells_, "/bin/true", "1.0", {{"demonstrator", "a cell", file}}, 1});
+  const std::string text = Json::parse(service.answer({"GET", "/api/1/templates/demonstrator", ""}).body)["text"];
+  const serve::ApiAnswer answer = service.answer({"POST", "/api/1/reach/a.yaml", text});
+  ASSERT_EQ(answer.status, 200) << answer.body;
+  const Json map = Json::parse(answer.body);
+  EXPECT_EQ(map["layers"].size(), 4U);
+  EXPECT_EQ(map["layers"][0]["verdicts"].size(), 384U);
+  EXPECT_GT(map["counts"]["reached"], 1000);
+}
+
+TEST_F(ServiceTest, StreamsFramesThatAreWhole) {
+  std::ofstream(cells_ / "r.txt") << "$ snug pack a.yaml\n";
+  std::ofstream(cells_ / "r.live") << "event: header\ndata: a\n\nevent: frames\nda";
+  const serve::ApiAnswer frames = ask("GET", "runs/r/live");
+  ASSERT_TRUE(frames.next);
+  EXPECT_EQ(frames.next(), "event: header\ndata: a\n\n");
+  std::ofstream(cells_ / "r.live", std::ios::app) << "ta: b\n\n";
+  EXPECT_EQ(frames.next(), "event: frames\ndata: b\n\n");
+  std::optional<std::string> last;
+  int pieces = 0;
+  while (const std::optional<std::string> piece = frames.next()) {
+    last = piece;
+    ASSERT_LT(++pieces, 100);
+  }
+  EXPECT_EQ(last, "event: over\ndata: {}\n\n");
+  EXPECT_EQ(ask("GET", "runs/none/live").status, 422);
 }
 
 TEST_F(ServiceTest, RefusesRequestsThatAreWrong) {
@@ -128,9 +191,9 @@ TEST_F(ServiceTest, RefusesDeepRequests) {
 TEST_F(ServiceTest, AnswersRandomRequestsWithoutLeavingTheFolder) {
   (void)json("PUT", "files/a.yaml", cell_);
   Rng rng(11);
-  const std::vector<std::string> words = {"files",  "runs",   "check", "facts", "templates",  "folder", "commands",
-                                          "a.yaml", "a",      "..",    ".",     "",           "%2e%2e", "stop",
-                                          "events", "report", "\n",    "\xff",  "secret.yaml"};
+  const std::vector<std::string> words = {
+      "files",  "runs", "check",  "facts",  "templates", "folder", "commands", "a.yaml", "a",  "..",   ".",          "",
+      "%2e%2e", "stop", "events", "report", "scene",     "move",   "reach",    "live",   "\n", "\xff", "secret.yaml"};
   const std::vector<std::string> methods = {"GET", "POST", "PUT", "DELETE", "PATCH", ""};
   const auto any = [&](const std::vector<std::string>& of) {
     return of[static_cast<std::size_t>(rng.index(static_cast<int>(of.size())))];
