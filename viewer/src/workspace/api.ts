@@ -33,6 +33,41 @@ export interface Checked {
   facts: Facts | null;
 }
 
+/** Something that stands in a cell and can be moved. */
+export interface CellPart {
+  key: string;
+  name: string;
+  position_mm: [number, number, number];
+  yaw_deg: number;
+}
+
+export interface CellScene {
+  parts: CellPart[];
+  has_robot: boolean;
+  form: string; // replay form, base64
+}
+
+export interface CellMove {
+  key: string;
+  position_mm: [number, number, number];
+  yaw_deg: number;
+}
+
+/** Where over the container and at the picks the tool can stand; metres. */
+export interface ReachMap {
+  robot: string;
+  container: string;
+  pose: [number, number, number, number, number, number, number];
+  inner_size: [number, number, number];
+  columns: number;
+  rows: number;
+  verdicts: string[];
+  whats: string[];
+  counts: Record<string, number>;
+  layers: { name: string; height: number; verdicts: number[]; whats: number[] }[];
+  picks: { item: string; count: number; position: [number, number, number]; verdict: number; what: number }[];
+}
+
 export interface BoxEnd {
   id: string;
   end: string;
@@ -42,7 +77,7 @@ export interface BoxEnd {
 
 export interface RunStatus {
   name: string;
-  state: "waiting" | "running" | "done" | "failed" | "ended early" | "not started";
+  state: "waiting" | "running" | "done" | "failed" | "ended early" | "not started" | "being read";
   can_be_stopped: boolean;
   command: string;
   message: string;
@@ -113,6 +148,9 @@ export const api = {
   facts: (name: string) => ask<Checked>("GET", `facts/${as(name)}`),
   check: (name: string, text: string) => ask<Checked>("POST", `check/${as(name)}`, text),
   write: (name: string, text: string) => ask<{ facts: Facts }>("PUT", `files/${as(name)}`, text),
+  scene: (name: string, text: string) => ask<CellScene>("POST", `scene/${as(name)}`, text),
+  reach: (name: string, text: string) => ask<ReachMap>("POST", `reach/${as(name)}`, text),
+  move: (name: string, text: string, moves: CellMove[]) => ask<{ text: string }>("POST", `move/${as(name)}`, JSON.stringify({ text, moves })),
   removeFile: (name: string) => ask<object>("DELETE", `files/${as(name)}`),
   commands: (run: RunRequest) => ask<{ runs: { name: string; command: string }[] }>("POST", "commands", JSON.stringify(run)),
   start: (run: RunRequest) => ask<{ runs: { name: string; command: string }[] }>("POST", "runs", JSON.stringify(run)),
@@ -120,6 +158,7 @@ export const api = {
   removeRun: (name: string) => ask<object>("DELETE", `runs/${as(name)}`),
   fileAddress: (name: string) => `/api/1/files/${as(name)}`,
   reportAddress: (name: string) => `/api/1/runs/${as(name)}/report`,
+  frames: (name: string) => new EventSource(`/api/1/runs/${as(name)}/live`),
   events: (name: string) => new EventSource(`/api/1/runs/${as(name)}/events`),
 };
 

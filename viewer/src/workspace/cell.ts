@@ -1,8 +1,14 @@
-// Cell: a scenario as text, with a form beside it for its main numbers; mistakes shown with their line.
+// Cell: a scenario as text, drawn beside it; its parts are moved in the drawing, by numbers or in the text; mistakes shown
+// with their line, and what the robot reaches over the container.
 
-import { api, type Checked, type Facts } from "./api";
+import { api, type CellMove, type CellPart, type Checked, type Facts } from "./api";
 import { action, field, later, make, numberInput, setChoices, textInput } from "./dom";
+import { namesIn, type Place } from "./placing";
+import { makeReach } from "./reach";
 import type { Shell } from "./shell";
+import { decodeBase64, decodeReplay } from "../replay/decode";
+import { Replay } from "../replay/replay";
+import { Stage } from "./stage";
 import { canEditCup, canEditSize, setCupRadius, setInnerSize } from "./yaml_edit";
 
 export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void } {
@@ -20,6 +26,23 @@ export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void 
   const radius = numberInput("", 1, 200, "any");
   let facts: Facts | null = null;
 
+  // The drawing, made when there is something to draw.
+  const place = make("div", "stage-place", make("p", "hint", "Here the cell is drawn."));
+  const part = make("select");
+  const numbers = [0, 1, 2].map(() => numberInput("", -100000, 100000, "any"));
+  const turn = numberInput("", -360, 360, "any");
+  const snap = make("select");
+  setChoices(snap, [["1", "1 mm"], ["10", "10 mm"], ["50", "50 mm"], ["100", "100 mm"]], "10");
+  snap.value = "10";
+  let stage: Stage | null = null;
+  let parts: CellPart[] = [];
+  const reach = makeReach(shell, (map, layer) => stage?.showReach(map, layer));
+  /** Text that was drawn last, and what was moved since and could not be drawn. */
+  let base = "";
+  let moves = new Map<string, CellMove>();
+  let writtenHere = ""; // text that moves made
+  let isOther = true; // than the cell that is drawn
+
   const fileName = (): string => `${name.value.trim()}.yaml`;
   const target = (): number => (facts?.containers ?? []).findIndex((one) => one.name === facts!.target);
 
@@ -32,6 +55,21 @@ export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void 
     });
     radius.disabled = facts?.cup_radius_mm === undefined || !canEditCup(text.value);
     if (facts?.cup_radius_mm !== undefined && document.activeElement !== radius) radius.value = String(Number(facts.cup_radius_mm.toFixed(3)));
+  }
+
+  let numbersOf = "";
+  /** A number that is being typed stays, unless another part was chosen. */
+  function showNumbers(at?: Place): void {
+    const one = parts.find(({ key }) => key === part.value);
+    for (const input of [...numbers, turn]) input.disabled = !one;
+    if (!one) return;
+    const isTyped = (input: HTMLInputElement): boolean => document.activeElement === input && numbersOf === one.key;
+    const shown = at ?? { position: one.position_mm, yaw: one.yaw_deg };
+    numbers.forEach((input, k) => {
+      if (!isTyped(input)) input.value = String(Number(shown.position[k]!.toFixed(3)));
+    });
+    if (!isTyped(turn)) turn.value = String(Number(shown.yaw.toFixed(4)));
+    numbersOf = one.key;
   }
 
   function goToLine(line: number): void {
@@ -50,7 +88,63 @@ export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void 
     goTo.textContent = `Show line ${mistake?.line ?? ""}`;
     goTo.onclick = () => goToLine(mistake!.line!);
     if (checked.facts) facts = checked.facts;
-    if (!mistake) showForm();
+    stage?.markWrong(mistake ? namesIn(mistake.text) : []);
+    if (mistake) return;
+    showForm();
+    void draw(checked.text);
+  }
+
+  async function draw(drawn: string): Promise<void> {
+    try {
+      const scene = await api.scene(fileName(), drawn);
+      if (drawn !== text.value) return;
+      const replay = new Replay(await decodeReplay(decodeBase64(scene.form)));
+      if (drawn !== text.value) return;
+      if (!stage) {
+        stage = new Stage();
+        stage.onSelect = (key) => {
+          part.value = key;
+          showNumbers();
+        };
+        stage.onDrag = (_, at) => showNumbers(at);
+        stage.onMove = (key, at) => void move(key, at);
+        place.replaceChildren(stage.element);
+      }
+      base = drawn;
+      moves = new Map();
+      parts = scene.parts;
+      const before = part.value;
+      setChoices(part, parts.map((one): [string, string] => [one.key, one.name]), before);
+      stage.snap = Number(snap.value);
+      stage.selected = part.value;
+      stage.show(replay, parts, isOther);
+      isOther = false;
+      stage.markWrong([]);
+      showNumbers();
+      if (scene.has_robot) await reach.load(fileName(), drawn, () => drawn === text.value);
+      else reach.clear("This cell has no robot: its tool moves by itself, wherever it has to be.");
+    } catch (error) {
+      reach.clear(shell.say(error));
+    }
+  }
+
+  /** The part goes there, in the text; what could not be drawn before is moved with it. */
+  async function move(key: string, to: Place): Promise<void> {
+    if (moves.size > 0 && text.value !== writtenHere) return shell.tell("The text has a mistake: mend it first.", true);
+    moves.set(key, { key, position_mm: to.position, yaw_deg: to.yaw });
+    const asked = [...moves.values()];
+    const done = await shell.attempt(() => api.move(fileName(), base, asked));
+    if (!done) {
+      moves.delete(key);
+      stage?.select(part.value);
+      return showNumbers();
+    }
+    parts = parts.map((one) => (one.key === key ? { ...one, position_mm: to.position, yaw_deg: to.yaw } : one));
+    stage?.setParts(parts);
+    text.value = writtenHere = done.text;
+    shell.tell("");
+    showNumbers();
+    await check();
   }
 
   async function check(): Promise<void> {
@@ -73,10 +167,21 @@ export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void 
     await check();
   }
 
+  async function editPlace(): Promise<void> {
+    const one = parts.find(({ key }) => key === part.value);
+    const [x, y, z] = numbers.map((input) => input.valueAsNumber) as [number, number, number];
+    if (!one || ![x, y, z, turn.valueAsNumber].every(Number.isFinite)) return;
+    const isThere = [x, y, z].every((value, k) => Math.abs(value - one.position_mm[k]!) < 1e-3) && Math.abs(turn.valueAsNumber - one.yaw_deg) < 1e-4;
+    if (isThere) return;
+    stage?.preview({ position: [x, y, z], yaw: turn.valueAsNumber });
+    await move(one.key, { position: [x, y, z], yaw: turn.valueAsNumber });
+  }
+
   async function begin(): Promise<void> {
     const found = await shell.attempt(() => api.template(template.value));
     if (!found) return;
     name.value = template.value;
+    isOther = true;
     text.value = found.text;
     await check();
   }
@@ -86,6 +191,7 @@ export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void 
     const checked = await shell.attempt(() => api.facts(saved.value));
     if (!checked) return;
     name.value = saved.value.replace(/\.yaml$/, "");
+    isOther = true;
     text.value = checked.text;
     show(checked);
   }
@@ -100,19 +206,33 @@ export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void 
 
   const changed = later(300, () => void edit());
   for (const input of [...sizes, radius]) input.addEventListener("input", changed);
+  const placed = later(300, () => void editPlace());
+  for (const input of [...numbers, turn]) input.addEventListener("input", placed);
   text.addEventListener("input", later(300, () => void check()));
   saved.addEventListener("change", () => void open());
+  part.addEventListener("change", () => {
+    stage?.select(part.value);
+    showNumbers();
+  });
+  snap.addEventListener("change", () => stage && (stage.snap = Number(snap.value)));
   showForm();
+  showNumbers();
   void check();
   const element = make("section", "page",
-    make("div", "bar", field("Template", template), action("Begin from the template", begin), field("Open a cell of the folder", saved)),
-    make("div", "bar", field("Name of the cell", name), action("Save cell", save, "main")),
+    make("div", "bar", field("Template", template), action("Begin from the template", begin), field("Open a cell of the folder", saved),
+      field("Name of the cell", name), action("Save cell", save, "main")),
     make("div", "bar", verdict, goTo),
-    make("div", "two",
-      make("fieldset", "", make("legend", "", "Main numbers"),
-        field("Container length in mm", sizes[0]!), field("Container width in mm", sizes[1]!), field("Container height in mm", sizes[2]!),
-        field("Cup radius in mm", radius), make("p", "", "The tempo is chosen with the run. Everything else is in the text.")),
-      field("Text of the cell (YAML)", text, "wide")));
+    make("div", "cell",
+      make("div", "cell-left", place,
+        make("p", "hint edits", "Drag a part; with Shift up and down. Or choose it and use the arrow keys, Page Up, Page Down, [ and ] in the drawing."),
+        make("fieldset", "numbers edits", make("legend", "", "Place of a part"),
+          field("Part", part), field("x in mm", numbers[0]!), field("y in mm", numbers[1]!), field("z in mm", numbers[2]!), field("Turn in degrees", turn), field("Snap to", snap)),
+        make("fieldset", "numbers edits", make("legend", "", "Main numbers"),
+          field("Container length in mm", sizes[0]!), field("Container width in mm", sizes[1]!), field("Container height in mm", sizes[2]!),
+          field("Cup radius in mm", radius), make("p", "", "The tempo is chosen with the run. Everything else is in the text."))),
+      make("div", "cell-right", reach.element, field("Text of the cell (YAML)", text, "wide"))));
+  // For tests and scripts that point at parts.
+  (window as unknown as { snugCell: object }).snugCell = { pointOf: (key: string) => stage?.pointOf(key) ?? null, reachLayer: () => reach.layer() };
   return {
     element,
     refresh: () => {

@@ -3,6 +3,7 @@
 import { api, isGoingOn, type RunRequest, type RunStatus } from "./api";
 import { action, field, later, make, numberInput, setChoices, table, textInput } from "./dom";
 import type { Shell } from "./shell";
+import { Watch } from "./watch";
 
 const MOST_SHOWN = 300; // runs in the list
 
@@ -10,6 +11,7 @@ const MOST_SHOWN = 300; // runs in the list
 export function describe(run: RunStatus): string {
   const counts = run.items > 0 ? `${run.packed} of ${run.items} packed, ${run.percent.toFixed(1)} % full` : "";
   if (run.state === "ended early") return `${counts}; it was killed, and can be resumed`;
+  if (run.state === "being read") return "its log is being read";
   if (run.state === "not started") return "the program that would have started it has ended";
   return [counts, run.lost > 0 ? `${run.lost} lost` : "", run.state === "running" ? "" : run.message || run.stopped].filter(Boolean).join("; ");
 }
@@ -27,6 +29,7 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
   const live = make("div", "live");
   live.setAttribute("role", "status");
   const list = make("div", "scroll");
+  const scene = new Watch();
   let watched: EventSource | null = null;
   let isNameTyped = false;
 
@@ -60,6 +63,8 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
   }
 
   function showLive(run: RunStatus): void {
+    if (run.state === "running") scene.begin(run.name);
+    else if (scene.name !== run.name || run.state === "waiting") scene.end();
     const bar = make("progress");
     bar.max = Math.max(1, run.items);
     bar.value = run.done;
@@ -132,7 +137,7 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
     make("div", "bar", field("Cell", scenario), field("Items", items), field("Order", sequence)),
     make("div", "bar", field("Plants", plants), field("First plant seed", seed), field("Tempo", tempo), field("Name of the run", name),
       action("Start", () => start(request()), "main")),
-    make("p", "hint", "What Start does, as a command in the folder:"), command, live, make("h2", "", "Runs of the folder"), list);
+    make("p", "hint", "What Start does, as a command in the folder:"), command, make("div", "going", live, scene.element), make("h2", "", "Runs of the folder"), list);
   return {
     element,
     refresh: () => {

@@ -49,7 +49,7 @@ export class Shell {
       this.folder = await api.folder();
       this.trouble.hidden = true;
       this.onChange();
-      if (this.folder.runs.some(isGoingOn)) this.look(BETWEEN_LOOKS);
+      if (this.folder.runs.some((run) => isGoingOn(run) || run.state === "being read")) this.look(BETWEEN_LOOKS);
     } catch (error) {
       const isOther = error instanceof Refused && error.status === 403;
       this.trouble.textContent = isOther

@@ -100,7 +100,7 @@ describe("the page of snug ui", () => {
     await picture(page, "workspace-run");
     expect(actions).toBeLessThanOrEqual(25);
     expect(readFileSync(join(folder, "run-1.txt"), "utf8").split("\n")[0]).toBe(
-      "$ snug pack cell.yaml --items my-orders-1-.csv --sequence mine --plant-seed 1 --log run-1.jsonl --program run-1.program.csv -o run-1.h5");
+      "$ snug pack cell.yaml --items my-orders-1-.csv --sequence mine --plant-seed 1 --log run-1.jsonl --live run-1.live --program run-1.program.csv -o run-1.h5");
     expect(readFileSync(join(folder, "cell.yaml"), "utf8")).toContain("# What is packed into: a tote"); // comments stay
 
     await click("tab", "Compare");

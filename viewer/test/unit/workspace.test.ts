@@ -3,9 +3,12 @@
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { describe, expect, it } from "vitest";
-import type { RunStatus } from "../../src/workspace/api";
+import type { ReachMap, RunStatus } from "../../src/workspace/api";
 import { csvOf } from "../../src/workspace/compare";
 import { plainName } from "../../src/workspace/dom";
+import { moved, namesIn, snapped } from "../../src/workspace/placing";
+import { nextTime } from "../../src/workspace/pace";
+import { countLayer } from "../../src/workspace/reach_count";
 import { canEditCup, canEditSize, setCupRadius, setInnerSize } from "../../src/workspace/yaml_edit";
 
 const cell = readFileSync(join(__dirname, "../../../scenarios/init/cell.yaml"), "utf8");
@@ -35,6 +38,48 @@ describe("edits of a scenario's text", () => {
     expect(canEditSize("a: 1", 1)).toBe(false);
     expect(canEditSize(cell, 2)).toBe(false);
     expect(setInnerSize(cell, 1, [1, 1, 1])).toBe(cell);
+  });
+});
+
+describe("places of parts", () => {
+  it("snap to whole steps without noise", () => {
+    expect([snapped(123.4, 10), snapped(-4, 10), snapped(0.1 + 0.2, 0.1), snapped(75, 50)]).toEqual([120, 0, 0.3, 100]);
+    expect(Object.is(snapped(-4, 10), 0)).toBe(true);
+  });
+  it("go to the next step by keys, from wherever they are", () => {
+    const from = { position: [123, -20, 0] as [number, number, number], yaw: 178 };
+    expect(moved(from, "ArrowRight", 10)!.position).toEqual([130, -20, 0]);
+    expect(moved(from, "ArrowLeft", 10)!.position).toEqual([120, -20, 0]);
+    expect(moved(from, "ArrowUp", 10)!.position).toEqual([123, -10, 0]);
+    expect(moved(from, "ArrowDown", 10)!.position).toEqual([123, -30, 0]);
+    expect(moved(from, "PageDown", 50)!.position).toEqual([123, -20, -50]);
+    expect(moved(from, "]", 10)!.yaw).toBe(-175);
+    expect(moved(from, "a", 10)).toBeNull();
+  });
+  it("are named in mistakes", () => {
+    expect(namesIn("cell.yaml:3: bodies: 'bench' overlaps 'tote' by 3 mm")).toEqual(["bench", "tote"]);
+  });
+});
+
+describe("what is reached", () => {
+  it("is counted by verdict, with what is mostly in the way", () => {
+    const map = {
+      robot: "r", container: "c", pose: [0, 0, 0, 1, 0, 0, 0], inner_size: [1, 1, 1], columns: 2, rows: 2, counts: {}, picks: [],
+      verdicts: ["reached", "out of reach", "joint limit"], whats: ["", "elbow", "wrist"],
+      layers: [{ name: "low", height: 0, verdicts: [0, 1, 2, 2], whats: [0, 0, 2, 1] }],
+    } as unknown as ReachMap;
+    expect(countLayer(map, 0)).toEqual({ verdicts: [1, 1, 2], reasons: [["joint limit: wrist", 1], ["joint limit: elbow", 1]] });
+  });
+});
+
+describe("the clock of a run that is watched", () => {
+  it("goes on with the run, catches up with bursts, and never passes the newest frame", () => {
+    expect(nextTime(1, 10, 0.033)).toBeGreaterThan(1.033); // nine seconds behind: faster than the clock
+    expect(nextTime(1, 1.01, 0.033)).toBe(1.01);
+    expect(nextTime(2, 1, 0.033)).toBe(1);
+    let shown = 0;
+    for (let k = 0; k < 120; ++k) shown = nextTime(shown, 10, 1 / 30);
+    expect(shown).toBeGreaterThan(9.9); // in four seconds
   });
 });
 

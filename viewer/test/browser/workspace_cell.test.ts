@@ -1,0 +1,207 @@
+// The cell of `snug ui` in Chromium: what is reached, parts moved by mouse, keys and numbers, the same cell as by hand; runs
+// watched in 3D; and what an accessibility checker finds on every view.
+
+import type { ChildProcess } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import type { Browser, Page } from "playwright-core";
+import { afterAll, afterEach, beforeAll, describe, expect, it } from "vitest";
+import { openBrowser } from "../support/browser";
+import { repository, serveWith, snug } from "../support/program";
+
+const ORDERS = "order,article,length_mm,width_mm,height_mm,mass_kg\nmine,A,180,120,90,0.4\nmine,B,150,120,90,0.3\n";
+const PATIENCE = 180_000; // ms, for drawing without a graphics card while others work
+const axe = readFileSync(join(repository, "viewer/node_modules/axe-core/axe.min.js"), "utf8");
+
+let browser: Browser;
+let folder = "";
+let child: ChildProcess | null = null;
+let address = "";
+const errors: string[] = [];
+
+async function openPage(width = 1280, height = 720): Promise<Page> {
+  const context = await browser.newContext({ viewport: { width, height } });
+  const page = await context.newPage();
+  page.on("pageerror", (error) => errors.push(error.message));
+  page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
+  page.on("dialog", (dialog) => void dialog.accept());
+  await page.goto(address);
+  await page.waitForFunction(() => (window as unknown as { snugReady?: boolean }).snugReady === true);
+  return page;
+}
+
+/** For people to look at, where SNUG_PICTURES asks for them. */
+async function picture(page: Page, name: string): Promise<void> {
+  if (process.env.SNUG_PICTURES) await page.screenshot({ path: `test/out/${name}.png` });
+}
+
+async function begin(page: Page, template: string): Promise<void> {
+  await page.getByRole("tab", { name: "Cell" }).click();
+  await page.getByLabel("Template").selectOption(template);
+  await page.getByRole("button", { name: "Begin from the template" }).click();
+  await page.getByText(/This cell can be used/).waitFor();
+  await page.locator(".stage canvas").waitFor();
+}
+
+const text = (page: Page): Promise<string> => page.getByLabel("Text of the cell (YAML)").inputValue();
+const textHas = (page: Page, words: string): Promise<unknown> =>
+  page.waitForFunction((wanted) => (document.querySelector("textarea.tall") as HTMLTextAreaElement).value.includes(wanted), words);
+const pointOf = (page: Page, key: string): Promise<[number, number]> =>
+  page.evaluate((wanted) => (window as unknown as { snugCell: { pointOf(key: string): [number, number] } }).snugCell.pointOf(wanted), key);
+interface Watched {
+  frames(): number;
+  shown(): number;
+  end(): number;
+}
+const watched = (page: Page): Promise<{ frames: number; shown: number; end: number }> =>
+  page.evaluate(() => {
+    const watch = (window as unknown as { snugWatch: Watched }).snugWatch;
+    return { frames: watch.frames(), shown: watch.shown(), end: watch.end() };
+  });
+
+/** Findings that keep somebody from using the page. */
+async function serious(page: Page): Promise<string[]> {
+  await page.evaluate(axe);
+  return page.evaluate(async () => {
+    interface Found {
+      violations: { id: string; impact: string; nodes: { html: string }[] }[];
+    }
+    const found = await (window as unknown as { axe: { run(): Promise<Found> } }).axe.run();
+    return found.violations.filter(({ impact }) => impact === "serious" || impact === "critical").map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html.slice(0, 120)).join(" | ")}`);
+  });
+}
+
+beforeAll(async () => {
+  folder = mkdtempSync(join(tmpdir(), "snug-ui-cell-"));
+  writeFileSync(join(folder, "mine.csv"), ORDERS);
+  browser = await openBrowser();
+  ({ child, address } = await serveWith("ui", folder, "--no-open"));
+});
+afterEach(() => void errors.splice(0));
+afterAll(async () => {
+  await browser?.close();
+  child?.kill("SIGTERM");
+  rmSync(folder, { recursive: true, force: true });
+});
+
+describe("the cell of snug ui", () => {
+  it("shows what the robot reaches, anew when its base is moved", async () => {
+    const page = await openPage();
+    await begin(page, "demonstrator");
+    await page.getByText("reached: 384 of 384").or(page.getByText(/^reached: \d+ of 384/)).first().waitFor();
+    await page.getByText(/All \d+ places of pick are reached/).waitFor();
+    await page.getByLabel("Height of the cup").selectOption({ index: 3 });
+    await page.getByText("reached: 384 of 384").waitFor();
+    await picture(page, "workspace-reach");
+    await page.getByRole("combobox", { name: "Part", exact: true }).selectOption("robot");
+    await page.getByLabel("x in mm").fill("-1500");
+    await textHas(page, "pose: {position: [-1.5, 0.0, 0.0], yaw_deg: 180.0}           # W is the controller's");
+    await page.getByText("out of reach: 384 of 384").waitFor();
+    await picture(page, "workspace-reach-moved");
+    expect(errors).toEqual([]);
+    await page.context().close();
+  }, PATIENCE);
+
+  it("moves parts by mouse and by keys, in whole steps, and shows mistakes where they are", async () => {
+    const page = await openPage();
+    await begin(page, "cell");
+    await page.getByText("This cell has no robot").waitFor();
+    const [x, y] = await pointOf(page, "containers.tote");
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 30, y + 5, { steps: 4 });
+    await page.mouse.up();
+    await page.waitForFunction(() => !(document.querySelector("textarea.tall") as HTMLTextAreaElement).value.includes("position: [0.45, 0.0, 0.02]"));
+    const found = /name: tote, pose: \{position: \[(-?[\d.]+), (-?[\d.]+), 0\.02\]/.exec(await text(page))!;
+    expect(found).not.toBeNull();
+    for (const number of found.slice(1, 3)) expect(Math.abs((Number(number) * 100) % 1)).toBeLessThan(1e-6); // of 10 mm
+    expect(await text(page)).toContain("# What is packed into: a tote");
+    expect(await page.getByRole("combobox", { name: "Part", exact: true }).inputValue()).toBe("containers.tote");
+
+    const before = Number(await page.getByLabel("x in mm").inputValue());
+    await page.getByLabel("Snap to").selectOption("50");
+    await page.locator(".stage canvas").focus();
+    await page.keyboard.press("ArrowRight");
+    await page.waitForFunction((old) => Number((document.querySelectorAll("fieldset.numbers input")[0] as HTMLInputElement).value) > old, before);
+    expect(Number(await page.getByLabel("x in mm").inputValue()) % 50).toBe(0);
+    await page.keyboard.press("PageDown"); // into the bench
+    await page.getByText(/overlaps/).waitFor();
+    expect(await page.locator(".verdict.bad").innerText()).toContain("tote");
+    await page.getByRole("button", { name: /Show line/ }).click();
+    await picture(page, "workspace-mistake");
+    await page.getByLabel("z in mm").fill("20");
+    await page.getByText(/This cell can be used/).waitFor();
+    expect(errors).toEqual([]);
+    await page.context().close();
+  }, PATIENCE);
+
+  it("makes the same cell as one that is written by hand", async () => {
+    const page = await openPage();
+    await begin(page, "cell");
+    await page.getByRole("combobox", { name: "Part", exact: true }).selectOption("containers.tote");
+    await page.getByLabel("y in mm").fill("50");
+    await textHas(page, "[0.45, 0.05, 0.02]");
+    await page.getByText(/This cell can be used/).waitFor();
+    await page.getByRole("combobox", { name: "Part", exact: true }).selectOption("aligner");
+    await page.getByLabel("x in mm").fill("-420");
+    await textHas(page, "[-0.42, -0.1, 0.0]");
+    await page.getByText(/This cell can be used/).waitFor();
+    await page.getByLabel("Container height in mm").fill("180");
+    await textHas(page, "[0.4, 0.3, 0.18]");
+    await page.getByLabel("Name of the cell").fill("by-page");
+    await page.getByRole("button", { name: "Save cell" }).click();
+    await page.getByText("by-page.yaml is saved.").waitFor();
+    const hand = readFileSync(join(repository, "scenarios/init/cell.yaml"), "utf8")
+      .replace("position: [0.45, 0.0, 0.02]}, inner_size: [0.400, 0.300, 0.200]", "position: [0.450, 0.050, 0.020]}, inner_size: [0.40, 0.30, 0.18]")
+      .replace("position: [-0.40, -0.10, 0.0]", "position: [-0.420, -0.100, 0]");
+    writeFileSync(join(folder, "by-hand.yaml"), hand);
+    const hashOf = (name: string): string => {
+      const said = snug("pack", join(folder, `${name}.yaml`), "--items", join(folder, "mine.csv"), "--sequence", "mine", "--samples", "0", "--json");
+      return (JSON.parse(said) as { state_hash: string }).state_hash;
+    };
+    expect(hashOf("by-page")).toMatch(/^[0-9a-f]{16}$/);
+    expect(hashOf("by-page")).toBe(hashOf("by-hand"));
+    expect(errors).toEqual([]);
+    await page.context().close();
+  }, PATIENCE);
+});
+
+describe("a run of snug ui", () => {
+  it("is watched in 3D while it goes on, and stops when told", async () => {
+    const page = await openPage();
+    await page.getByRole("tab", { name: "Run" }).click();
+    await page.getByRole("combobox", { name: "Cell", exact: true }).selectOption("by-page.yaml");
+    await page.getByText(/snug pack by-page.yaml --sequence first .*--live run-1.live/).waitFor();
+    await page.getByRole("button", { name: "Start", exact: true }).click();
+    await page.locator(".watch .stage canvas").waitFor();
+    await page.waitForFunction(() => (window as unknown as { snugWatch: Watched }).snugWatch.shown() > 0.5);
+    const first = await watched(page);
+    expect(first.frames).toBeGreaterThan(10);
+    expect(first.shown).toBeLessThanOrEqual(first.end);
+    await page.locator(".live").getByRole("button", { name: "Stop" }).click();
+    await picture(page, "workspace-live");
+    expect(await serious(page)).toEqual([]); // with the drawing
+    await page.getByText(/interrupted/).first().waitFor();
+    expect(errors).toEqual([]);
+    await page.context().close();
+  }, PATIENCE);
+
+  it("can be used with the aids that an accessibility checker speaks for", async () => {
+    for (const [width, height] of [[1280, 720], [390, 800]] as const) {
+      const page = await openPage(width, height);
+      await begin(page, "demonstrator");
+      await page.getByText(/places of pick are reached/).waitFor();
+      for (const tab of ["Items", "Cell", "Run", "Compare", "Take away"]) {
+        await page.getByRole("tab", { name: tab }).click();
+        if (tab === "Items") await page.getByRole("button", { name: "Use the example" }).click();
+        if (tab === "Run") await page.getByRole("button", { name: "Show" }).first().click();
+        if (tab === "Compare") await page.getByText("Boxes an hour").waitFor();
+        expect(await serious(page), `${tab} at ${width}`).toEqual([]);
+        expect(await page.evaluate(() => document.documentElement.scrollWidth), tab).toBeLessThanOrEqual(width);
+        await picture(page, `workspace-${tab}-${width}`);
+      }
+      await page.context().close();
+    }
+  }, 2 * PATIENCE);
+});
