@@ -15,8 +15,8 @@
 namespace snug::serve {
 namespace {
 
-constexpr std::size_t kFramesAPicture = 4;   ///< of 8 ms
-constexpr std::size_t kPicturesAnEvent = 8;  ///< a quarter of a second: small enough to follow, large enough to deflate
+constexpr std::size_t kFramesAPicture = 4;    ///< of 8 ms
+constexpr std::size_t kPicturesAnEvent = 16;  ///< half a second: small enough to follow, large enough to deflate
 
 }  // namespace
 
