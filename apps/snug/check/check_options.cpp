@@ -17,7 +17,8 @@ everything that stands in the cell. Nothing is felt: rows of a fast program go t
 Margins of collisions are distances, negative inside; what cup and held box may be inside is said beside them. Rows with
 one finding stand in one line. Exit code 0: nothing in the way; 1: something is; 2: the input cannot be used.
 With --reach: poses of a grid over the container and those of the picks, each by the same tests; a pose is reached where
-one branch of the arm's inverse passes them, ways are not looked at. Exit code 1: a pick is not reached, or no place over the container.
+one branch of the arm's inverse passes them, ways are not looked at. Exit code 1: a pick is not reached, or no place over
+the container.
 Examples:
   snug check scenarios/box-demonstrator.yaml --program program.csv --sequence 1
   snug check scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --controller exact --json

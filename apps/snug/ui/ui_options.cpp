@@ -14,7 +14,8 @@ constexpr const char* kUiExamples = R"(Examples:
   snug ui                                            # the folder that you are in
   snug ui . --no-open                                # prints the address only
 The folder holds plain files that all other verbs read and write: scenarios (.yaml), orders (.csv), and of each run its
-command with what it printed (.txt), its log (.jsonl), recording (.h5), program (.program.csv) and, while it goes on, frames (.live).
+command with what it printed (.txt), its log (.jsonl), recording (.h5), program (.program.csv) and, while it goes on,
+frames (.live).
 Ctrl-C ends the page and interrupts its runs. The page is served to this machine only, and to who knows the printed
 address with its token. Addresses for other programs: docs/ui.md.)";
 

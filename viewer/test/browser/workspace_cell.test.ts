@@ -188,7 +188,9 @@ describe("a run of snug ui", () => {
   }, PATIENCE);
 
   it("can be used with the aids that an accessibility checker speaks for", async () => {
-    for (const [width, height] of [[1280, 720], [390, 800]] as const) {
+    const sizes: [number, number][] = [[1280, 720], [390, 800]];
+    if (process.env.SNUG_PICTURES) sizes.push([1920, 1080]); // for people to look at
+    for (const [width, height] of sizes) {
       const page = await openPage(width, height);
       await begin(page, "demonstrator");
       await page.getByText(/places of pick are reached/).waitFor();
