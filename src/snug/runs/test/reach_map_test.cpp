@@ -106,11 +106,12 @@ TEST(ReachMap, AgreesWithCheckOnAThousandPosesOfMovedBases) {
       })) << row;
     }
   }
-  // Each of the answers that such a cell has came often enough to count.
-  for (const ReachVerdict verdict :
-       {ReachVerdict::Reached, ReachVerdict::OutOfReach, ReachVerdict::SelfCollision, ReachVerdict::Collision}) {
-    EXPECT_GT(counts[static_cast<std::size_t>(verdict)], 20) << name_of(verdict);
-  }
+  // Each of the answers came often enough to count. An arm that could stand on itself only is rare: another branch of
+  // it mostly stands free or meets something else.
+  const auto count_of = [&](ReachVerdict verdict) { return counts[static_cast<std::size_t>(verdict)]; };
+  for (const ReachVerdict verdict : {ReachVerdict::Reached, ReachVerdict::OutOfReach, ReachVerdict::Collision})
+    EXPECT_GT(count_of(verdict), 30) << name_of(verdict);
+  EXPECT_GT(count_of(ReachVerdict::SelfCollision), 5);
 }
 
 TEST(ReachMap, CoversTheContainerAndThePicksOfTheDemonstrator) {
