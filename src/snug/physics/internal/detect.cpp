@@ -135,7 +135,7 @@ void fill_patch(const WorldModel& model, const PairBodies& bodies, const PairSta
 /// Adds the pair's contacts. Returns whether one of them touches.
 bool add_contacts(const WorldModel& model, const PairBodies& bodies, std::uint32_t index, double reach, PairState& pair,
                   Scratch& work) {
-  Contact* const contacts = has_room(work) ? work.contacts.end() : work.no_room.data();
+  Contact* const contacts = has_room(work) ? work.contacts.room(geometry::kMaxManifoldPoints) : work.no_room.data();
   const PairVisit visit = find_contacts(bodies, reach, model.settings.dt, work, pair, contacts);
   const bool touches = place_contacts(bodies, index, visit, work);
   const int patch = work.pair_memories[index].patch;
