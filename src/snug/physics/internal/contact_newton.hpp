@@ -30,6 +30,7 @@ struct GroupScratch {
 
   ContactSystem system;
   std::unique_ptr<NewtonRow[]> rows;
+  std::unique_ptr<double[]> before;                     ///< 3 per row: impulses before the last sweep with momentum
   std::vector<double> u, u_free, u_start, error, step;  ///< 6 per active body
   std::unique_ptr<ClusterScratch> clusters;
   bool is_infeasible = false;  ///< the group that was solved last: no velocities keep its contacts apart

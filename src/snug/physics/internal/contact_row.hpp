@@ -129,6 +129,12 @@ inline double worst_residual(const Row* first, const Row* end, const double* u) 
 /// One sweep of Gauss-Seidel; returns the largest change of relative velocity, m/s.
 double sweep_rows(Row* first, Row* end, double* u, bool is_forward) noexcept;
 
+/// One forward sweep that starts at each row from its impulse and `momentum` times what the sweep before changed of it.
+/// `before`: 3 numbers of each row, its impulse before that sweep, renewed here. u belongs to the impulses with that
+/// momentum. `uphill`: positive where the sweep goes back on what the momentum adds. Returns the largest change of
+/// relative velocity, m/s.
+double sweep_with_momentum(Row* first, Row* end, double* u, double momentum, double* before, double& uphill) noexcept;
+
 /// Delassus block, its inverse and the tangential step, from a, b and gamma.
 void finish_row(Row& row) noexcept;
 

@@ -11,6 +11,9 @@ namespace {
 constexpr int kEdgePoints = 2;  ///< as many contacts of a patch, or fewer, are an edge or a corner
 /// m, gap and way in the step up to which a point of a face stays where it is (decision 0099).
 constexpr double kHeld = 1e-5;
+/// Rows of an island from which on contacts that stand nearer than the position slop are closed: else the gaps that the
+/// correction of positions leaves open and close one after the other (decision 0104).
+constexpr int kHeapRows = 512;
 constexpr double kNever = -1e6;  ///< m/s, approach that nothing has: asks a contact for no impulse
 
 /// How a body enters the rows of a patch: whitened J of axis i at arm r is sign (L_i, G_i r), G_i a 3 x 3 matrix.
@@ -198,7 +201,7 @@ void fill_compliant_law(const ContactLaw& law, double dt, const Patch& patch, co
 
 /// The law of one contact in this step: docs/theory/contact.md, section 3.
 void fill_law(const WorldModel& model, const Patch& patch, const Contact& contact, double free_velocity, int bearing,
-              Row& row) {
+              bool is_heap, Row& row) {
   const double dt = model.settings.dt;
   const double mean = 0.5 * (contact.approach + free_velocity);
   const ContactLaw& law = model.laws[patch.law];
@@ -222,6 +225,13 @@ void fill_law(const WorldModel& model, const Patch& patch, const Contact& contac
     return;
   }
   if (contact.phi + dt * mean > 0.0) {  // does not close by itself: may be pushed as far as closing
+    const double slop = model.settings.position_slop;
+    const bool stands = contact.phi <= slop && std::abs(dt * mean) <= slop &&
+                        std::abs(contact.approach) <= model.settings.restitution_threshold;
+    if (is_heap && stands) {
+      row.target = 0.0;
+      return;
+    }
     row.target = std::min(0.0, -2.0 * contact.phi / dt - contact.approach);
     return;
   }
@@ -272,6 +282,7 @@ void drop_impulse(Row& row) {
 
 void build_rows(const WorldModel& model, const WorldState& state, Scratch& work, const Island& island, bool is_first) {
   Row* row = work.rows.begin() + island.first_row;
+  const bool is_heap = island.end_row - island.first_row >= kHeapRows;
   for (int i = island.first_patch; i < island.end_patch; ++i) {
     const Patch& patch = work.patches[static_cast<std::size_t>(work.patch_order[static_cast<std::size_t>(i)])];
     const BodyWork& a = work.bodies[static_cast<std::size_t>(patch.body_a)];
@@ -291,7 +302,7 @@ void build_rows(const WorldModel& model, const WorldState& state, Scratch& work,
     for (int k = patch.first_contact; k < patch.first_contact + patch.contact_count; ++k, ++row) {
       if (is_kept) prefetch(row + 4);
       const Contact& contact = work.contacts[static_cast<std::size_t>(k)];
-      fill_law(model, patch, contact, relative_velocity(*row, 0, work.u.data()), bearing, *row);
+      fill_law(model, patch, contact, relative_velocity(*row, 0, work.u.data()), bearing, is_heap, *row);
       if (patch.moves_friction) row->mu *= work.friction_points[static_cast<std::size_t>(k)].fraction;
       if (!is_kept) finish_row(*row);
       if (!is_first) continue;

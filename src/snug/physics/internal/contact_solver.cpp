@@ -77,6 +77,27 @@ double sweep_rows(Row* first, Row* end, double* u, bool is_forward) noexcept {
   return change;
 }
 
+double sweep_with_momentum(Row* first, Row* end, double* u, double momentum, double* before, double& uphill) noexcept {
+  double change = 0.0;
+  uphill = 0.0;
+  for (Row* row = first; row != end; ++row, before += 3) {
+    double old[3], start[3];
+    for (int k = 0; k < 3; ++k) {
+      old[k] = row->lambda[k];
+      row->lambda[k] = start[k] = old[k] + momentum * (old[k] - before[k]);
+      before[k] = old[k];
+    }
+    (void)relax(*row, u);
+    const double mobility[3] = {row->W[0], row->W[3], row->W[5]};
+    for (int k = 0; k < 3; ++k) {
+      const double d = row->lambda[k] - old[k];
+      change = std::max(change, mobility[k] * std::abs(d));
+      uphill += mobility[k] * (start[k] - row->lambda[k]) * d;
+    }
+  }
+  return change;
+}
+
 void finish_row(Row& row) noexcept {
   double* W = row.W;
   const auto product = [&row](int i, int j) {
