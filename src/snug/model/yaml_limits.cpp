@@ -16,16 +16,19 @@
 namespace snug::model {
 namespace {
 
-[[noreturn]] void refuse_count(const std::string& where) {
-  throw InputError(where, "",
-                   "more than " + std::to_string(kMostYamlValues) + " values (an alias is all that it stands for)",
+std::size_t most_values(std::size_t bytes) {
+  return kMostYamlValues + (bytes > kFewYamlBytes ? (bytes - kFewYamlBytes) / kBytesPerYamlValue : 0);
+}
+
+[[noreturn]] void refuse_count(const std::string& where, std::size_t most) {
+  throw InputError(where, "", "more than " + std::to_string(most) + " values (an alias is all that it stands for)",
                    "at most so many");
 }
 
 /// The parser keeps all of a list in brackets before it tells of its first value.
 void check_brackets(std::string_view text, std::string_view name) {
   const auto marks = std::count_if(text.begin(), text.end(), [](char c) { return c == ',' || c == '[' || c == '{'; });
-  if (static_cast<std::size_t>(marks) > 2 * kMostYamlValues) refuse_count(std::string(name));
+  if (static_cast<std::size_t>(marks) > 2 * kMostYamlValues) refuse_count(std::string(name), kMostYamlValues);
 }
 
 std::string where_of(std::string_view name, const YAML::Mark& mark) {
@@ -35,7 +38,7 @@ std::string where_of(std::string_view name, const YAML::Mark& mark) {
 /// Counts the values of a document while it is parsed, before anything is made of it.
 class Counter final : public YAML::EventHandler {
  public:
-  explicit Counter(std::string_view name) : name_(name) {}
+  Counter(std::string_view name, std::size_t most) : name_(name), most_(most) {}
   /// Where the newest document starts.
   [[nodiscard]] const YAML::Mark& start() const { return start_; }
 
@@ -76,7 +79,7 @@ class Counter final : public YAML::EventHandler {
     if (open_.empty()) return;
     open_.back().count += count;
     total_ += count;
-    if (total_ > kMostYamlValues || open_.back().count > kMostYamlValues) refuse_count(where_of(name_, mark));
+    if (total_ > most_ || open_.back().count > most_) refuse_count(where_of(name_, mark), most_);
   }
   void add_leaf(const YAML::Mark& mark, YAML::anchor_t anchor) {
     if (anchor != 0) count_of_[anchor] = 1;
@@ -92,6 +95,7 @@ class Counter final : public YAML::EventHandler {
   }
 
   std::string_view name_;
+  std::size_t most_;
   YAML::Mark start_;
   std::vector<Open> open_;
   std::map<YAML::anchor_t, std::size_t> count_of_;  ///< of values that are complete
@@ -110,7 +114,7 @@ void check_yaml(std::string_view text, std::string_view name) {
   // YAML::Load takes the first document and silently drops what follows, be it a second one or the rest after a stray
   // bracket; YAML::LoadAll never returns when it meets a stray comma.
   std::istringstream stream{std::string(text)};
-  Counter counter(name);
+  Counter counter(name, most_values(text.size()));
   try {
     YAML::Parser parser(stream);
     if (!parser.HandleNextDocument(counter))

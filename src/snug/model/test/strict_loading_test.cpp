@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "scenario_text.hpp"
+#include "snug/model/yaml_limits.hpp"
 
 namespace snug::model {
 namespace {
@@ -346,6 +347,20 @@ TEST(StrictLoading, HoldsSkillsAndSettingsOfSessionsToTheirRanges) {
         "recovery: {skips: -1}", "motion_guards: {needed_vacuum: 1.5}"}) {
     EXPECT_THROW((void)parse_scenario(with(bad), "s.yaml"), InputError) << bad;
   }
+}
+
+TEST(YamlLimits, LetTenThousandBoxesInAndRefuseShortValuesThatAreAsMany) {
+  std::string boxes = "bodies:\n";
+  for (int i = 0; i < 10'000; ++i) {
+    boxes +=
+        "- {name: o" + std::to_string(i) + ", size: [0.1234567890123456, 0.1234567890123456, 0.1234567890123456], ";
+    boxes += "material: m, mass: 0.5123456789012345, pose: {position: [0.1234567890123456, 0.1234567890123456, ";
+    boxes += "12.34567890123456], rpy_deg: [-12.34567890123456, 12.34567890123456, 1.234567890123456]}}\n";
+  }
+  EXPECT_NO_THROW(check_yaml(boxes, "boxes.yaml"));
+  std::string letters;
+  for (int i = 0; i < 240'000; ++i) letters += "- a\n";
+  EXPECT_THROW(check_yaml(letters, "letters.yaml"), InputError);
 }
 
 }  // namespace
