@@ -2,10 +2,14 @@
 #include "apps/bench/internal/pile_bench.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <fstream>
+#include <iterator>
+#include <string_view>
 
 #include "apps/bench/drawn_scenes.hpp"
 #include "apps/bench/internal/cpu_time.hpp"
@@ -24,6 +28,10 @@ using physics::StepStatus;
 constexpr Pile kPiles[] = {
     {100, 5, 1}, {300, 7, 2}, {1000, 11, 3}, {3000, 40, 4}};  // the last: small heaps side by side
 constexpr int kPileSteps = 700;                               ///< 1.4 s: they fall, land and settle
+/// In one heap each, until they lie.
+constexpr Pile kHeaps[] = {{300, 7, 2}, {1000, 11, 3}, {3000, 15, 4}, {10000, 22, 5}};
+constexpr double kWindow = 0.2;  ///< s
+constexpr int kWindowSteps = 100, kHeapWindows = 20;
 
 bool is_wanted(const BenchOptions& options, const std::string& name) {
   return name.starts_with(options.only) || options.only.starts_with(name);
@@ -48,6 +56,21 @@ struct Quality {
   }
 };
 
+void add_quality(const std::string& name, const Quality& quality, std::vector<Figure>& figures) {
+  const double converged = 100.0 * (quality.steps - quality.unconverged) / quality.steps;
+  figures.push_back({name + "converged_percent", converged, "%", ">= 99.9", converged >= 99.9});
+  figures.push_back({name + "residual_m_s", quality.residual, "m/s", "", true});
+  figures.push_back({name + "rigid_depth_mm", kMm * quality.depth, "mm", "", true});
+}
+
+/// What the process has in memory now.
+double resident_bytes() {
+  std::ifstream file("/proc/self/statm");
+  double all = 0.0, resident = 0.0;
+  file >> all >> resident;
+  return resident * static_cast<double>(::sysconf(_SC_PAGESIZE));
+}
+
 }  // namespace
 
 void measure_piles(const BenchOptions& options, std::vector<Figure>& figures) {
@@ -62,13 +85,40 @@ void measure_piles(const BenchOptions& options, std::vector<Figure>& figures) {
     const double start = cpu_seconds();
     for (int step = 0; step < kPileSteps; ++step) quality.add(scene.advance());
     costs[i] = 1e6 * (cpu_seconds() - start) / (static_cast<double>(kPileSteps) * pile.count);
-    const double converged = 100.0 * (quality.steps - quality.unconverged) / quality.steps;
     figures.push_back(at_most(name + "us_per_body_and_step", costs[i], "us", kTargets[i]));
-    figures.push_back({name + "converged_percent", converged, "%", ">= 99.9", converged >= 99.9});
-    figures.push_back({name + "residual_m_s", quality.residual, "m/s", "", true});
-    figures.push_back({name + "rigid_depth_mm", kMm * quality.depth, "mm", "", true});
+    add_quality(name, quality, figures);
   }
   if (costs[0] > 0.0 && costs[3] > 0.0) figures.push_back(at_most("piles.growth", costs[3] / costs[0], "1", 2.0));
+}
+
+void measure_heaps(const BenchOptions& options, std::vector<Figure>& figures) {
+  constexpr double kTargets[] = {8.0, 12.0, 14.0, 16.0};
+  for (std::size_t i = 0; i < std::size(kHeaps); ++i) {
+    const Pile& pile = kHeaps[i];
+    const std::string name = fmt::format("heaps.{}", pile.count);
+    // Those of 3000 and 10 000 take many minutes: only where they are asked for by their names.
+    const bool is_asked = options.only == name || options.only.starts_with(name + ".");
+    if (!is_asked && (pile.count > 1000 || !std::string_view("heaps").starts_with(options.only))) continue;
+    const double memory = resident_bytes();
+    Scene scene(drawn_pile(pile));
+    figures.push_back(
+        {name + ".kB_per_body_at_start", 1e-3 * (resident_bytes() - memory) / pile.count, "kB", "", true});
+    Quality quality;
+    double worst = 0.0, worst_end = 0.0;
+    for (int window = 1; window <= kHeapWindows; ++window) {
+      const double start = cpu_seconds();
+      for (int step = 0; step < kWindowSteps; ++step) quality.add(scene.advance());
+      const double cost = 1e6 * (cpu_seconds() - start) / (static_cast<double>(kWindowSteps) * pile.count);
+      const double end = kWindow * window;
+      figures.push_back({fmt::format("{}.{:.1f}s.us_per_body_and_step", name, end), cost, "us", "", true});
+      if (cost > worst) worst = cost, worst_end = end;
+    }
+    figures.push_back(at_most(name + ".worst.us_per_body_and_step", worst, "us", kTargets[i]));
+    figures.push_back({name + ".worst.window_end_s", worst_end, "s", "", true});
+    add_quality(name + ".", quality, figures);
+    const double memory_used = 1e-3 * (resident_bytes() - memory) / pile.count;
+    figures.push_back(at_most(name + ".kB_per_body", memory_used, "kB", 20.0));
+  }
 }
 
 void measure_threads(const BenchOptions& options, std::vector<Figure>& figures) {

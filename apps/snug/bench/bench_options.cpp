@@ -19,7 +19,7 @@ void add_bench(CLI::App& app, Action& action) {
   verb.footer(
       "Examples:\n  snug bench\n  snug bench --json --only s1\n  snug bench camera\n  snug bench --only packing\n  "
       "snug bench --only "
-      "identification\n  snug bench piles\n  snug bench drops --drops 1000");
+      "identification\n  snug bench piles\n  snug bench heaps.3000\n  snug bench drops --drops 1000");
   verb.callback([options, &action] { action = [options] { return run_bench(*options); }; });
 }
 
