@@ -1,7 +1,7 @@
 // Compare: runs as columns, and the same as a CSV.
 
 import type { RunStatus } from "./api";
-import { action, make, table } from "./dom";
+import { action, make, scrollable, table } from "./dom";
 import type { Shell } from "./shell";
 
 const MOST_COLUMNS = 12; // of the table when nothing is chosen
@@ -31,7 +31,7 @@ export function csvOf(runs: RunStatus[]): string {
 
 export function makeCompare(shell: Shell): { element: HTMLElement; refresh(): void } {
   const choices = make("fieldset", "choices");
-  const place = make("div", "scroll");
+  const place = scrollable(make("div", "scroll"));
   const left = new Set<string>(); // out
 
   const chosen = (): RunStatus[] => shell.folder.runs.filter((run) => run.items > 0 && !left.has(run.name));

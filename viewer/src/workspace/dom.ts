@@ -72,6 +72,12 @@ export function plainName(name: string, otherwise: string): string {
   return stem || otherwise;
 }
 
+/** Can be scrolled by keys. */
+export function scrollable<T extends HTMLElement>(element: T): T {
+  element.tabIndex = 0;
+  return element;
+}
+
 /** Calls after nothing has asked for it for that long, ms. */
 export function later(wait: number, call: () => void): () => void {
   let timer = 0;

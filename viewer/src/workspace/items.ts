@@ -1,7 +1,7 @@
 // Items: orders of boxes from a CSV: chosen, dropped or typed; mistakes marked where they are; boxes drawn to scale.
 
 import { api, Refused, type Checked, type ItemLine } from "./api";
-import { action, field, later, make, plainName, setChoices, textInput } from "./dom";
+import { action, field, later, make, plainName, scrollable, setChoices, textInput } from "./dom";
 import type { Shell } from "./shell";
 
 const EXAMPLE = `order,article,length_mm,width_mm,height_mm,mass_kg,count
@@ -52,7 +52,7 @@ export function makeItems(shell: Shell): { element: HTMLElement; refresh(): void
   text.wrap = "off";
   const verdict = make("p", "verdict");
   verdict.setAttribute("role", "status");
-  const rows = make("div", "scroll");
+  const rows = scrollable(make("div", "scroll"));
   const boxes = make("div", "boxes");
 
   const fileName = (): string => `${name.value.trim()}.csv`;

@@ -1,7 +1,7 @@
 // Run: what is packed with what, as the command that does it; its progress while it goes on; all runs of the folder.
 
 import { api, isGoingOn, type RunRequest, type RunStatus } from "./api";
-import { action, field, later, make, numberInput, setChoices, table, textInput } from "./dom";
+import { action, field, later, make, numberInput, scrollable, setChoices, table, textInput } from "./dom";
 import type { Shell } from "./shell";
 import { Watch } from "./watch";
 
@@ -25,10 +25,17 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
   const tempo = make("select");
   setChoices(tempo, [["", "1 (full speed)"], ["0.9", "0.9"], ["0.8", "0.8"], ["0.7", "0.7"], ["0.6", "0.6"], ["0.5", "0.5"]]);
   const name = textInput("run-1");
-  const command = make("pre", "command");
-  const live = make("div", "live");
-  live.setAttribute("role", "status");
-  const list = make("div", "scroll");
+  const command = scrollable(make("pre", "command"));
+  const said = make("div");
+  said.setAttribute("role", "status");
+  let shown = ""; // the run that is told of
+  // It stays where it is while all around it changes: who wants to stop a run has to hit it.
+  const stop = action("Stop", async () => void (await shell.attempt(() => api.stop(shown))));
+  const elsewhere = make("span", "", "Another program started this run: it can be stopped there.");
+  const shownCommand = scrollable(make("pre", "command"));
+  const live = make("div", "live", said, make("div", "bar", stop, elsewhere), shownCommand);
+  live.hidden = true;
+  const list = scrollable(make("div", "scroll"));
   const scene = new Watch();
   let watched: EventSource | null = null;
   let isNameTyped = false;
@@ -69,12 +76,14 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
     bar.max = Math.max(1, run.items);
     bar.value = run.done;
     bar.setAttribute("aria-label", "Boxes done");
-    const boxes = make("ol", "box-list", ...(run.boxes ?? []).map((box) =>
-      make("li", box.packed ? "" : "bad", make("b", "", box.id), ` ${box.end}${box.reason ? `: ${box.reason}` : ""}`)));
-    const buttons = make("div", "bar");
-    if (isGoingOn(run) && run.can_be_stopped) buttons.append(action("Stop", async () => void (await shell.attempt(() => api.stop(run.name)))));
-    if (isGoingOn(run) && !run.can_be_stopped) buttons.append("Another program started this run: it can be stopped there.");
-    live.replaceChildren(make("h2", "", `${run.name}: ${run.state}`), make("p", "", describe(run)), bar, boxes, buttons, make("pre", "command", run.command));
+    const boxes = scrollable(make("ol", "box-list", ...(run.boxes ?? []).map((box) =>
+      make("li", box.packed ? "" : "bad", make("b", "", box.id), ` ${box.end}${box.reason ? `: ${box.reason}` : ""}`))));
+    shown = run.name;
+    live.hidden = false;
+    stop.hidden = !isGoingOn(run) || !run.can_be_stopped;
+    elsewhere.hidden = !isGoingOn(run) || run.can_be_stopped;
+    shownCommand.textContent = run.command;
+    said.replaceChildren(make("h2", "", `${run.name}: ${run.state}`), make("p", "", describe(run)), bar, boxes);
   }
 
   function watch(which: string): void {

@@ -1,7 +1,7 @@
 // Take away: what a run left, to open or to store, and the commands that make more of it.
 
 import { api, isGoingOn } from "./api";
-import { field, link, make, setChoices } from "./dom";
+import { field, link, make, scrollable, setChoices } from "./dom";
 import type { Shell } from "./shell";
 
 const FILES: [ending: string, text: string][] = [
@@ -35,7 +35,7 @@ export function makeTakeAway(shell: Shell): { element: HTMLElement; refresh(): v
       `snug export ${program} --format urscript -o ${run.name}.script`,
       `snug export ${program} --format ros-trajectory -o ${run.name}.ros.yaml`,
     ];
-    place.replaceChildren(links, make("h2", "", "Commands in the folder"), make("pre", "command", commands.join("\n")),
+    place.replaceChildren(links, make("h2", "", "Commands in the folder"), scrollable(make("pre", "command", commands.join("\n"))),
       make("p", "hint", "URScript and ROS trajectories need a cell with a robot."));
   }
 
