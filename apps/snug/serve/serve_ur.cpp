@@ -18,6 +18,7 @@ class ServingUr {
         runs_(options, served_ur::Controller::period_of(model_.model)) {
     served_ur::ControllerSettings settings;
     settings.model = model_.model;
+    settings.feeds_on_request = options.plant_seed.has_value();  // as plants that are packed
     settings.begin_run = [this](int run) { return runs_.begin(run); };
     settings.end_run = [this](int run, const runs::RunResult& result) {
       runs_.end(run, result);

@@ -556,7 +556,9 @@ std::vector<plant::Event> RemoteUr::advance() {
       news_.wait_for(lock, std::chrono::milliseconds(100), [this] { return !results_.empty(); });
     } else {
       lock.unlock();
-      tick();
+      do {
+        tick();
+      } while (results_.empty() && !is_moving_);  // a box takes its time
       lock.lock();
     }
   }
@@ -578,7 +580,7 @@ bool RemoteUr::bring(const model::ParcelId& item) {
   was_brought_[index] = true;
   awaited_.push_back(item);
   look_for_part();
-  if (!awaited_.empty() && is_on(io_.part_present, sample_.digital_inputs)) ask_for_part();  // it was not used
+  if (!awaited_.empty()) ask_for_part();
   if (runner_.has_events()) push_result();
   return true;
 }

@@ -234,7 +234,7 @@ void Controller::advance_cell() {
   if (!run_ && data_.digital_outputs == outputs_off_ && !programs_->is_active()) return;
   if (!run_) begin_run();
   take_next_part();
-  const int item = feeder_.next(simulation_, run_->state());
+  const int item = settings_.feeds_on_request && io_.next_part ? -1 : feeder_.next(simulation_, run_->state());
   if (item >= 0) {
     (void)run_->feed(item, 0);
     feeder_.advance();

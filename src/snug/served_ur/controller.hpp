@@ -23,6 +23,7 @@ class Programs;
 
 struct ControllerSettings {
   ur::Model model = ur::Model::Ur10;
+  bool feeds_on_request = false;       ///< a box comes only when it is asked for, where robot.io has next_part
   bool programs_reach_others = false;  ///< programs may open sockets to other machines
   /// What is to be done with each run, from 1; asked for when it begins.
   std::function<runs::OutsideRunOptions(int run)> begin_run = {};

@@ -104,6 +104,7 @@ class SteppedLink final : public RobotLink {
   static served_ur::ControllerSettings settings_of(ur::Model model) {
     served_ur::ControllerSettings settings;
     settings.model = model;
+    settings.feeds_on_request = true;
     return settings;
   }
   cell::Simulation simulation_;
