@@ -1,5 +1,5 @@
-// What peers on the wire send: frames of CLICK, RTDE, lines of the dashboard; and the keys that say who they are, by the
-// first byte.
+// What peers on the wire send: frames of CLICK, RTDE, lines of the dashboard; and the keys that say who they are, by
+// the first byte.
 #include "fuzz.hpp"
 #include "scratch_file.hpp"
 #include "snug/click/keys.hpp"

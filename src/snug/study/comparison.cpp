@@ -14,11 +14,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array kStopReasons = {session::StopReason::AllPacked,  session::StopReason::NoMoreItems,
-                                     session::StopReason::NoItems,    session::StopReason::NoPlace,
-                                     session::StopReason::RobotStops, session::StopReason::ViewBlocked,
-                                     session::StopReason::NoFrame,
-                                     session::StopReason::PlantFault, session::StopReason::Interrupted};
+constexpr std::array kStopReasons = {
+    session::StopReason::AllPacked, session::StopReason::NoMoreItems, session::StopReason::NoItems,
+    session::StopReason::NoPlace,   session::StopReason::RobotStops,  session::StopReason::ViewBlocked,
+    session::StopReason::NoFrame,   session::StopReason::PlantFault,  session::StopReason::Interrupted};
 
 /// The names that rows have.
 struct FieldNames {

@@ -73,9 +73,8 @@ TEST(StateTable, EverySignalIsOfSomeTransition) {
 
 TEST(StateTable, IsTheOneOfTheDocs) {
   const std::string docs = read_file(SNUG_SOURCE_DIR "/docs/session.md", "the docs");
-  EXPECT_NE(docs.find(format_table(transitions())), std::string::npos)
-      << "docs/session.md has to have this table:\n"
-      << format_table(transitions());
+  EXPECT_NE(docs.find(format_table(transitions())), std::string::npos) << "docs/session.md has to have this table:\n"
+                                                                       << format_table(transitions());
 }
 
 /// Motions that end in all ways, one after the other: the path of every session follows the table from its first state
