@@ -1202,7 +1202,7 @@ class OtherCells(unittest.TestCase):
         export = ("export", program, "--scenario", CELL, "--items", self.orders, "--sequence", "two", "--format")
         out = self.folder / "own.yaml"
         self.assertEqual(snug(*export, "ros-trajectory", "-o", out).returncode, 0)
-        ends = re.findall(r"time_from_start: \{sec: (\d+), nanosec: (\d+)\}", out.read_text().split("---")[0])
+        ends = re.findall(r"time_from_start: \{sec: (\d+), nanosec: (\d+)\}", out.read_text().split("\nio:")[0])
         last = int(ends[-1][0]) + 1e-9 * int(ends[-1][1])
         self.assertAlmostEqual(last, own, delta=0.2, msg="until the joints rest")
         self.assertIn(", tempo 0.8", out.read_text())

@@ -448,7 +448,7 @@ parameters:
   EXPECT_NEAR(fit.values[1], -0.007, 0.002);
 }
 
-// A world that sits aside by less than a sample's noise: chi2 hardly shows it (1 + 0.36 / 6), nor do neighbours, whose
+// A recorded world that sits higher by less than a sample's noise: chi2 hardly shows it (1 + 0.81 / 6), nor do neighbours, whose
 // correlation is shared among six axes; its axis is off through every part of all recordings.
 TEST_F(SceneFitTest, IdentifiesNothingWhereOneAxisIsOffThroughAllRecordings) {
   const std::vector<model::NumberEdit> truth{{"contacts.pairs[0].friction", 0.41},
@@ -457,10 +457,10 @@ TEST_F(SceneFitTest, IdentifiesNothingWhereOneAxisIsOffThroughAllRecordings) {
     std::vector<RecordedMotion> motions{record(truth, seed), record(truth, seed + 10)};
     EXPECT_FALSE(identify_scene(SceneExperiment(task(kTwo), motions, 2)).is_systematic) << seed;
     for (RecordedMotion& motion : motions) {
-      for (auto& pose : motion.tracked[0].poses) pose.p.x() += 0.6 * kPositionNoise;
+      for (auto& pose : motion.tracked[0].poses) pose.p.z() += 0.9 * kPositionNoise;
     }
     const SceneFit fit = identify_scene(SceneExperiment(task(kTwo), motions, 2));
-    EXPECT_LT(fit.chi2_per_dof, 1.2);
+    EXPECT_LT(fit.chi2_per_dof, 1.3);
     EXPECT_TRUE(fit.is_systematic) << seed;
     for (const auto& parameter : fit.parameters) EXPECT_NE(parameter.verdict, Verdict::Identified) << seed;
   }
