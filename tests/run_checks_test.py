@@ -58,7 +58,11 @@ class RunChecks(unittest.TestCase):
         self.assertEqual(machine.now, 60.0 * 40)
 
     def test_tests_that_do_not_end_are_a_failure(self):
-        self.assertEqual(Machine().check([tests_that_take("41")]), (["tests, broken off after 40.0 min", "1"], []))
+        self.assertEqual(Machine().check([tests_that_take("81")]), (["tests, broken off after 80.0 min", "1"], []))
+
+    def test_tests_on_a_slow_machine_end_and_the_others_are_left_out(self):
+        checks = [tests_that_take("45"), Check("clang", "1", minutes=1.0, may_be_left_out=True)]
+        self.assertEqual(Machine().check(checks), (["tests", "0"], ["clang: 4.5 min expected, 0.0 left"]))
 
     def test_breaks_off_all_that_a_command_started(self):
         with tempfile.TemporaryDirectory() as folder:

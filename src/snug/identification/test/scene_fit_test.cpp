@@ -448,8 +448,8 @@ parameters:
   EXPECT_NEAR(fit.values[1], -0.007, 0.002);
 }
 
-// A recorded world that sits higher by less than a sample's noise: chi2 hardly shows it (1 + 0.81 / 6), nor do neighbours, whose
-// correlation is shared among six axes; its axis is off through every part of all recordings.
+// A recorded world that sits higher by less than a sample's noise: chi2 hardly shows it (1 + 0.81 / 6), nor do
+// neighbours, whose correlation is shared among six axes; its axis is off through every part of all recordings.
 TEST_F(SceneFitTest, IdentifiesNothingWhereOneAxisIsOffThroughAllRecordings) {
   const std::vector<model::NumberEdit> truth{{"contacts.pairs[0].friction", 0.41},
                                              {"contacts.pairs[0].restitution", 0.35}};
