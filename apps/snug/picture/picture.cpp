@@ -23,6 +23,7 @@
 #include "apps/snug/common/robot_files.hpp"
 #include "snug/core/descriptor.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/temporary_folder.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/replay/browser.hpp"
 #include "snug/replay/replay.hpp"
@@ -52,28 +53,6 @@ void expect_parts(const char* option, const std::string& list) {
     begin = end + 1;
   }
 }
-
-/// A folder that is gone with the object.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "snug-picture-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-      throw InputError(name, "", "cannot be made", "a folder for temporary files (environment variable TMPDIR)");
-    }
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 /// The page with the recording in it, in a browser, as it is drawn for pictures.
 class Studio {
@@ -110,7 +89,7 @@ class Studio {
     if (trouble != "\"\"") throw replay::BrowserError("in the page: " + trouble);
   }
 
-  TemporaryFolder folder_;
+  TemporaryFolder folder_{"snug-picture"};
   replay::Browser browser_;
 };
 

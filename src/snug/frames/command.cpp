@@ -15,7 +15,9 @@
 #include <memory>
 #include <utility>
 
+#include "snug/core/descriptor.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/temporary_folder.hpp"
 #include "snug/core/text.hpp"
 #include "snug/frames/internal/source_parts.hpp"
 #include "snug/frames/internal/words.hpp"
@@ -31,48 +33,6 @@ using Clock = std::chrono::steady_clock;
 constexpr int kMoment = 10;              // ms, between looks whether it has ended
 constexpr std::size_t kMostKept = 4096;  // bytes of what it says, the last ones
 constexpr const char* kBaseName = "frame";
-
-/// Closes what it holds.
-class Descriptor {
- public:
-  explicit Descriptor(int fd = -1) : fd_(fd) {}
-  ~Descriptor() { reset(); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  void reset(int fd = -1) {
-    if (fd_ >= 0) ::close(fd_);
-    fd_ = fd;
-  }
-  [[nodiscard]] int get() const { return fd_; }
-
- private:
-  int fd_;
-};
-
-/// A folder for the frames of a command.
-class OwnFolder {
- public:
-  OwnFolder() {
-    std::string name = (fs::temp_directory_path() / "snug-frames-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr)
-      throw InputError(name, "", std::strerror(errno), "a folder for frames (TMPDIR names its place)");
-    path_ = name;
-  }
-  ~OwnFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  OwnFolder(const OwnFolder&) = delete;
-  OwnFolder& operator=(const OwnFolder&) = delete;
-  [[nodiscard]] const fs::path& path() const { return path_; }
-  void empty() const {
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(path_, error)) fs::remove_all(entry.path(), error);
-  }
-
- private:
-  fs::path path_;
-};
 
 std::vector<char*> pointers(std::vector<std::string>& texts) {
   std::vector<char*> all;
@@ -102,9 +62,9 @@ class Child {
   /// Empty, or why it did not start.
   std::string start(const std::string& program, std::vector<std::string> words, std::vector<std::string> variables) {
     std::array<int, 2> out{}, trouble{};
-    in_.reset(::open("/dev/null", O_RDONLY | O_CLOEXEC));
-    if (in_.get() < 0 || ::pipe2(out.data(), O_CLOEXEC) != 0) return std::strerror(errno);
-    from_.reset(out[0]);
+    in_ = Descriptor(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+    if (!in_.is_open() || ::pipe2(out.data(), O_CLOEXEC) != 0) return std::strerror(errno);
+    from_ = Descriptor(out[0]);
     Descriptor to(out[1]);
     if (::pipe2(trouble.data(), O_CLOEXEC) != 0) return std::strerror(errno);
     const Descriptor trouble_from(trouble[0]);
@@ -121,8 +81,8 @@ class Child {
       be_command(program.c_str(), argv.data(), environment.data(), in_.get(), out[1], trouble[1], self);
     if (process_ < 0) return std::strerror(errno);
     ::setpgid(process_, process_);  // both do, so that it is done before either goes on
-    to.reset();
-    trouble_to.reset();
+    to = Descriptor();
+    trouble_to = Descriptor();
     ::fcntl(from_.get(), F_SETFL, ::fcntl(from_.get(), F_GETFL) | O_NONBLOCK);
     int reason = 0;
     if (::read(trouble_from.get(), &reason, sizeof reason) != sizeof reason) return {};
@@ -255,7 +215,7 @@ class Command {
   SourceSettings settings_;
   std::vector<std::string> words_;
   std::string program_;
-  OwnFolder folder_;
+  TemporaryFolder folder_{"snug-frames"};
 };
 
 }  // namespace
