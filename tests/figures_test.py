@@ -64,9 +64,9 @@ class Made(unittest.TestCase):
         words = mock.Mock(snug="snug", folder=Path("rows"))
         with mock.patch.object(figures, "run", return_value=json.dumps({"rows": rows})):
             made = figures.sessions(words)
-        self.assertIn("| snug, two boxes may be left out | 73.5 % (71.0 to 76.0) | 400 |", made["sessions"])
-        self.assertIn("| snug, ended at the first box without a place | 71.5 % (69.0 to 74.0) |", made["sessions"])
-        self.assertIn("Of 360 boxes that were sent 359 ended as planned; none was lost.", made["sessions"])
+        self.assertIn("| snug, may leave out two boxes | 73.5 % (71.0 to 76.0) | 400 |", made["sessions"])
+        self.assertIn("| snug, stopped at the first box that does not fit | 71.5 % (69.0 to 74.0) |", made["sessions"])
+        self.assertIn("Of 360 boxes that the robot moved to a place 359 ended as planned; none was lost.", made["sessions"])
         self.assertIn("| people, by hand (the report) | 71.9 % | |", made["sessions"])
         self.assertIn("| snug, plant 1 | 12 / 71.0 |", made["sessions-by-sequence"])
         self.assertIn("| plant 2 | 72.00 | 72.00 | 72.00 | 72.00 | 72.00 | 72.00 |", made["sessions-by-plant"])

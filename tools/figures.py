@@ -83,9 +83,9 @@ def sessions(words):
         "| five sequences | filling, mean (lowest to highest) | boxes an hour |", "|---|---|---|",
         f"| people, by hand (the report) | {people} % | |",
         f"| robot, programmed by hand (the report) | {robot} % | |",
-        f"| snug, ended at the first box without a place | {mean_and_range(before, ' %')} | |",
-        f"| snug, two boxes may be left out | {mean_and_range(filled, ' %')} | {statistics.mean(hours):.0f} |", "",
-        f"Of {sent} boxes that were sent {planned} ended as planned; {'none was' if lost == 0 else f'{lost} were'} lost.", "", origin(what)]
+        f"| snug, stopped at the first box that does not fit | {mean_and_range(before, ' %')} | |",
+        f"| snug, may leave out two boxes | {mean_and_range(filled, ' %')} | {statistics.mean(hours):.0f} |", "",
+        f"Of {sent} boxes that the robot moved to a place {planned} ended as planned; {'none was' if lost == 0 else f'{lost} were'} lost.", "", origin(what)]
 
     def line(name, cells):
         return f"| {name} | " + " | ".join(cells) + " |"
@@ -96,7 +96,7 @@ def sessions(words):
         line("snug, six plants", [mean_and_range([row["executed_percent"] for row in by_sequence[name]]) for name in SEQUENCES] + [mean_and_range(filled)]),
         line("snug, plant 1", [f"{row['executed_boxes']} / {row['executed_percent']:.1f}" for row in first]
              + [mean_and_range([row["executed_percent"] for row in first])]),
-        line("snug, six plants, ended at the first box without a place",
+        line("snug, six plants, stopped at the first box that does not fit",
              [mean_and_range([row["percent_before_skips"] for row in by_sequence[name]]) for name in SEQUENCES] + [mean_and_range(before)]),
         *(line(who, [f"{boxes} / {percent:.1f}" for boxes, percent in cells] + [mean_of(cells)])
           for who, cells in REPORTED.items()), "",
