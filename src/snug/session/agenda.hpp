@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "snug/session/decisions.hpp"
+#include "snug/session/operator.hpp"
 #include "snug/session/result.hpp"
 
 namespace snug::session {
@@ -38,6 +39,11 @@ struct ItemTask {
   int sends = 0;                            ///< motions that were sent
   double angle_error = 0.0;                 ///< rad, from its plan, as it was seen last
   std::optional<Remedy> last_remedy;
+  std::vector<planning::Tried> tried;              ///< of the last decision that was left to the agent
+  std::optional<packing::Placement> asked_place;   ///< that the operator chose, and that is to be planned now
+  OperatorOrder asked_by;                          ///< its order
+  std::vector<packing::Placement> refused_places;  ///< by the operator
+  bool is_held = false;                            ///< by the operator
   RecoveryTask recovery;
   ItemEnd end = ItemEnd::NoPlace;
   std::string reason;

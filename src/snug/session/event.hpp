@@ -250,6 +250,25 @@ struct Remedied {
   }
 };
 
+/// Who operates said something; `item`: the one that was to be decided on or to come.
+struct Operated {
+  double time = 0.0;
+  model::ItemIndex item;
+  int line = 0;       ///< of the operator's file
+  std::string order;  ///< format_operator_order(), with the item
+  bool was_followed = true;
+  std::string text;  ///< why it was not, or what follows; for people
+  template <class Archive>
+  void fields(Archive& a) {
+    a("time", time);
+    a("item", item);
+    a("line", line);
+    a("order", order);
+    a("was_followed", was_followed);
+    a("text", text);
+  }
+};
+
 /// An item is done with; one that was packed anew because of another has no `end` of its own.
 struct ItemEnded {
   double time = 0.0;
@@ -346,11 +365,11 @@ struct SessionEnded {
 
 namespace snug::session {
 
-using SessionEvent =
-    std::variant<event::SessionStarted, event::DecidedBefore, event::Stepped, event::ItemStarted, event::ItemBrought,
-                 event::Perceived, event::Planned, event::PlanDropped, event::Sent, event::MotionStarted,
-                 event::MotionEnded, event::SendEnded, event::Assessed, event::Remedied, event::ItemEnded,
-                 event::Repacked, event::ItemLost, event::Counted, event::Stopped, event::SessionEnded>;
+using SessionEvent = std::variant<event::SessionStarted, event::DecidedBefore, event::Stepped, event::ItemStarted,
+                                  event::ItemBrought, event::Perceived, event::Planned, event::PlanDropped, event::Sent,
+                                  event::MotionStarted, event::MotionEnded, event::SendEnded, event::Assessed,
+                                  event::Remedied, event::Operated, event::ItemEnded, event::Repacked, event::ItemLost,
+                                  event::Counted, event::Stopped, event::SessionEnded>;
 
 /// What logs call it: "motion started".
 [[nodiscard]] const char* kind_of(const SessionEvent& one);

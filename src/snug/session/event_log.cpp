@@ -21,9 +21,10 @@ constexpr std::size_t kLargestLog = std::size_t{1} << 30U;
 
 /// In the order of the alternatives of SessionEvent.
 constexpr std::array<const char*, std::variant_size_v<SessionEvent>> kKinds{
-    "session started", "decided before", "stepped",        "item started", "item brought", "perceived",    "planned",
-    "plan dropped",    "sent",           "motion started", "motion ended", "send ended",   "assessed",     "remedied",
-    "item ended",      "repacked",       "item lost",      "counted",      "stopped",      "session ended"};
+    "session started", "decided before", "stepped",      "item started",   "item brought", "perceived",
+    "planned",         "plan dropped",   "sent",         "motion started", "motion ended", "send ended",
+    "assessed",        "remedied",       "operated",     "item ended",     "repacked",     "item lost",
+    "counted",         "stopped",        "session ended"};
 
 template <std::size_t kIndex = 0>
 SessionEvent read_alternative(std::size_t index, const JsonReader& reader) {
@@ -35,54 +36,44 @@ SessionEvent read_alternative(std::size_t index, const JsonReader& reader) {
   }
 }
 
-/// What fold() relies on: who reads a file of others has to hear where it breaks off.
-class OrderCheck {
- public:
-  void add(const SessionEvent& one, const std::string& place) {
-    std::visit([&](const auto& event) { check(event, place); }, one);
-    const auto* started = std::get_if<event::SessionStarted>(&one);
-    if (started != nullptr) items_ = static_cast<int>(started->items.size());
-    if (const auto* item = std::get_if<event::ItemStarted>(&one)) under_way_.push_back({item->item, 0});
-    if (std::holds_alternative<event::ItemEnded>(one)) under_way_.pop_back();
-    if (const auto* sent = std::get_if<event::Sent>(&one); sent != nullptr && !sent->replaces_last) {
-      ++under_way_.back().sends;
-    }
-  }
-
- private:
-  struct UnderWay {
-    model::ItemIndex item;
-    int sends = 0;
-  };
-  static void expect(bool holds, const std::string& place, const std::string& expected) {
-    if (!holds) throw InputError(place, "event", "out of order", expected);
-  }
-  template <class Event>
-  void check(const Event& event, const std::string& place) const {
-    using std::is_same_v;
-    constexpr bool is_start = is_same_v<Event, event::SessionStarted>;
-    expect(is_start == (items_ < 0), place, is_start ? "one start of a session" : "the start of a session first");
-    constexpr bool is_of_top =
-        is_same_v<Event, event::Sent> || is_same_v<Event, event::SendEnded> || is_same_v<Event, event::ItemEnded>;
-    constexpr bool may_be_none = is_same_v<Event, event::Stepped> || is_same_v<Event, event::MotionStarted> ||
-                                 is_same_v<Event, event::MotionEnded>;
-    if constexpr (requires { event.item; }) {
-      const bool is_item = event.item.is_valid() && event.item.value < items_;
-      expect(is_item || (may_be_none && !event.item.is_valid()), place, "an item of the session");
-    }
-    if constexpr (is_of_top) {
-      expect(!under_way_.empty() && under_way_.back().item == event.item, place, "the item that is under way");
-    }
-    bool needs_send = is_same_v<Event, event::SendEnded>;
-    if constexpr (is_same_v<Event, event::Sent>) needs_send = event.replaces_last;
-    expect(!needs_send || under_way_.back().sends > 0, place, "a motion that was sent before");
-  }
-
-  int items_ = -1;  ///< below 0: the session has not started
-  std::vector<UnderWay> under_way_;
-};
+void expect_in_order(bool holds, const std::string& place, const std::string& expected) {
+  if (!holds) throw InputError(place, "event", "out of order", expected);
+}
 
 }  // namespace
+
+template <class Event>
+void EventOrder::check(const Event& event, const std::string& place) const {
+  using std::is_same_v;
+  constexpr bool is_start = is_same_v<Event, event::SessionStarted>;
+  expect_in_order(is_start == (items_ < 0), place,
+                  is_start ? "one start of a session" : "the start of a session first");
+  constexpr bool is_of_top =
+      is_same_v<Event, event::Sent> || is_same_v<Event, event::SendEnded> || is_same_v<Event, event::ItemEnded>;
+  constexpr bool may_be_none = is_same_v<Event, event::Stepped> || is_same_v<Event, event::MotionStarted> ||
+                               is_same_v<Event, event::MotionEnded>;
+  if constexpr (requires { event.item; }) {
+    const bool is_item = event.item.is_valid() && event.item.value < items_;
+    expect_in_order(is_item || (may_be_none && !event.item.is_valid()), place, "an item of the session");
+  }
+  if constexpr (is_of_top) {
+    expect_in_order(!under_way_.empty() && under_way_.back().item == event.item, place, "the item that is under way");
+  }
+  bool needs_send = is_same_v<Event, event::SendEnded>;
+  if constexpr (is_same_v<Event, event::Sent>) needs_send = event.replaces_last;
+  expect_in_order(!needs_send || under_way_.back().sends > 0, place, "a motion that was sent before");
+}
+
+void EventOrder::add(const SessionEvent& one, const std::string& place) {
+  std::visit([&](const auto& event) { check(event, place); }, one);
+  const auto* started = std::get_if<event::SessionStarted>(&one);
+  if (started != nullptr) items_ = static_cast<int>(started->items.size());
+  if (const auto* item = std::get_if<event::ItemStarted>(&one)) under_way_.push_back({item->item, 0});
+  if (std::holds_alternative<event::ItemEnded>(one)) under_way_.pop_back();
+  if (const auto* sent = std::get_if<event::Sent>(&one); sent != nullptr && !sent->replaces_last) {
+    ++under_way_.back().sends;
+  }
+}
 
 const char* kind_of(const SessionEvent& one) { return kKinds[one.index()]; }
 
@@ -112,7 +103,7 @@ SessionEvent parse_event(std::string_view text, const std::string& where, int li
 
 EventLog parse_log(std::string_view text, const std::string& name) {
   EventLog log;
-  OrderCheck order;
+  EventOrder order;
   for (int line = 1; !text.empty(); ++line) {
     const std::size_t end = text.find('\n');
     log.is_whole = end != std::string_view::npos;

@@ -20,6 +20,25 @@ using EventSink = std::function<void(const SessionEvent&)>;
 /// Throws InputError with `where:line` and the path of the key.
 [[nodiscard]] SessionEvent parse_event(std::string_view text, const std::string& where, int line);
 
+/// What fold() relies on: whoever reads a file of others has to hear where it breaks off. Kinds of events that fold()
+/// makes nothing of may be left out.
+class EventOrder {
+ public:
+  /// Throws InputError with `place` for an event that cannot come now, or an item that is not of the session.
+  void add(const SessionEvent& one, const std::string& place);
+
+ private:
+  struct UnderWay {
+    model::ItemIndex item;
+    int sends = 0;
+  };
+  template <class Event>
+  void check(const Event& event, const std::string& place) const;
+
+  int items_ = -1;  ///< below 0: the session has not started
+  std::vector<UnderWay> under_way_;
+};
+
 struct EventLog {
   std::vector<SessionEvent> events;
   bool is_whole = true;  ///< false: the last line is broken off, the session was killed; it is left out

@@ -102,6 +102,11 @@ void ResultFold::take(const event::Remedied& one) {
   report->recoveries.push_back({one.time, report->id, one.trouble, one.remedy, one.detail});
 }
 
+void ResultFold::take(const event::Operated& one) {
+  if (ItemReport* report = report_of(one.item))
+    report->operator_steps.push_back({one.time, one.order, one.was_followed, one.text});
+}
+
 void ResultFold::take(const event::MotionStarted& one) {
   auto& all = result_.program.waypoints;
   all.insert(all.end(), one.waypoints.begin(), one.waypoints.end());

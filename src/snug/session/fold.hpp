@@ -28,6 +28,7 @@ class ResultFold {
   void take(const event::SendEnded& one);
   void take(const event::Assessed& one);
   void take(const event::Remedied& one);
+  void take(const event::Operated& one);
   void take(const event::ItemEnded& one);
   void take(const event::ItemLost& one);
   void take(const event::SessionEnded& one);

@@ -27,6 +27,10 @@ const char* name_of(ItemEnd end) {
       return "not brought";
     case ItemEnd::Rejected:
       return "rejected";
+    case ItemEnd::Skipped:
+      return "skipped";
+    case ItemEnd::TakenOut:
+      return "taken out";
   }
   return "";
 }
@@ -34,6 +38,13 @@ const char* name_of(ItemEnd end) {
 std::string describe(const ItemReport& item) {
   const std::string end = name_of(item.end);
   return item.reason.empty() || item.reason == end ? end : end + ": " + item.reason;
+}
+
+std::string describe(const OperatorStep& step) {
+  std::string text = step.order;
+  if (!step.was_followed) text += ", not followed";
+  if (!step.text.empty()) text += ": " + step.text;
+  return text;
 }
 
 const char* name_of(StopReason reason) {

@@ -26,6 +26,8 @@ enum class ItemEnd {
   WrongItem,   ///< another one came in its place; it was taken away
   NotBrought,  ///< the plant did not bring it
   Rejected,    ///< it lies in the container, but not as a box of a finished load has to
+  Skipped,     ///< the operator did not want it packed
+  TakenOut,    ///< it was packed, and the operator had it taken out
 };
 [[nodiscard]] const char* name_of(ItemEnd end);
 
@@ -37,6 +39,18 @@ struct Send {
   plant::End end;
   Trouble trouble = Trouble::None;  ///< found when it had ended
 };
+
+/// What who operates said of an item.
+struct OperatorStep {
+  double time = 0.0;         ///< s, of the plant
+  std::string order;         ///< as a line of `snug pack --operator`, with the item that it was done at
+  bool was_followed = true;  ///< false: it could not be, `text` says why
+  std::string text;          ///< for people; may be empty
+  bool operator==(const OperatorStep&) const = default;
+};
+
+/// "BOX027 skip", with why it was not followed.
+[[nodiscard]] std::string describe(const OperatorStep& step);
 
 /// Why a session did not end as it should, whatever was packed.
 enum class SessionFailureKind {
@@ -73,6 +87,7 @@ struct ItemReport {
   double angle_error = 0.0;           ///< rad
   std::vector<Send> sends;
   std::vector<Recovery> recoveries;
+  std::vector<OperatorStep> operator_steps;
   double decision_seconds = 0.0;  ///< wall clock, of the agent alone
   double rehearsal_seconds = 0.0;
   double planning_wait = 0.0;      ///< of both, while the robot stood: the rest passed while it left the item before

@@ -13,6 +13,7 @@
 namespace snug::session {
 namespace {
 
+using internal::OperatorDesk;
 using internal::Run;
 
 void check(const model::Scenario& scenario, const std::string& sequence, const motion::Tracking& tracking) {
@@ -60,6 +61,7 @@ void go_on(Run& run, const ResumePoint& point) {
       auto& all = run.belief.edit().sent;
       if (std::ranges::find(all, sent->item) == all.end()) all.push_back(sent->item);
     }
+    if (const auto* operated = std::get_if<event::Operated>(&one)) run.desk.mark_used(operated->line);
     const auto* ended = std::get_if<event::ItemEnded>(&one);
     if (ended != nullptr && --under_way == 0) {
       internal::account_for(run, ended->item, ended->end);
@@ -130,6 +132,7 @@ SessionResult pack(const model::Scenario& scenario, const std::string& sequence,
           Executor(plant, scenario, log),
           {},
           Decisions({options.decision.time, options.threads}, options.ask, options.save_beliefs),
+          OperatorDesk(options.operator_orders),
           std::nullopt};
   prepare(run, plant.describe().name);
   if (!run.options.resume) total = static_cast<int>(run.agenda.order.size());

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "snug/session/operator.hpp"
 #include "snug/session/resume.hpp"
 
 namespace snug::session {
@@ -22,6 +23,7 @@ struct SessionOptions {
   std::optional<packing::FutureModel> future;
   cell::SimulationOptions simulation{.tracking = motion::FastTracking{}};  ///< of rollouts
   std::function<bool()> is_interrupted;  ///< asked before every item; true ends the session; may be empty
+  OperatorSource operator_orders;        ///< what who operates says so far; empty: nobody is asked
   EventSink log;                         ///< told of every event when it happens; may be empty
   /// Goes on from here: the events are told again, their items do not come again. The plant has to be as they say.
   std::optional<ResumePoint> resume;

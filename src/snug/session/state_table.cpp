@@ -10,10 +10,12 @@ namespace {
 
 constexpr std::array kTransitions{
     Transition{State::NextItem, Signal::ItemToBring, State::Bring},
+    Transition{State::NextItem, Signal::TakeOut, State::TakeOut},
     Transition{State::NextItem, Signal::ItemIsHere, State::CheckItem},
     Transition{State::NextItem, Signal::ItemIsUnseen, State::PerceiveItem},
     Transition{State::NextItem, Signal::OrderDone, State::GoHome},
     Transition{State::NextItem, Signal::Stopped, State::GoHome},
+    Transition{State::TakeOut, Signal::Finished, State::Bring},
     Transition{State::Bring, Signal::Brought, State::PerceiveItem},
     Transition{State::Bring, Signal::NotBrought, State::FinishItem},
     Transition{State::PerceiveItem, Signal::Perceived, State::CheckItem},
@@ -21,9 +23,14 @@ constexpr std::array kTransitions{
     Transition{State::CheckItem, Signal::RightItem, State::Plan},
     Transition{State::CheckItem, Signal::WrongItem, State::FinishItem},
     Transition{State::Plan, Signal::Planned, State::Send},
+    Transition{State::Plan, Signal::ToBeConfirmed, State::AskOperator},
     Transition{State::Plan, Signal::Gone, State::FinishItem},
     Transition{State::Plan, Signal::NoPlace, State::PutBack},
     Transition{State::Plan, Signal::Stopped, State::FinishItem},
+    Transition{State::AskOperator, Signal::GoOn, State::Send},
+    Transition{State::AskOperator, Signal::AnotherPlace, State::Plan},
+    Transition{State::AskOperator, Signal::Skip, State::PutBack},
+    Transition{State::AskOperator, Signal::Stopped, State::FinishItem},
     Transition{State::PutBack, Signal::Finished, State::FinishItem},
     Transition{State::Send, Signal::Started, State::Moving},
     Transition{State::Moving, Signal::ToolLeaves, State::LookAhead},
@@ -90,8 +97,12 @@ const char* name_of(State state) {
       return "perceive item";
     case State::CheckItem:
       return "check item";
+    case State::TakeOut:
+      return "take out";
     case State::Plan:
       return "plan";
+    case State::AskOperator:
+      return "ask operator";
     case State::PutBack:
       return "put back";
     case State::Send:
@@ -144,6 +155,7 @@ const char* name_of(Signal signal) {
                                                             "right item",
                                                             "wrong item",
                                                             "planned",
+                                                            "to be confirmed",
                                                             "gone",
                                                             "no place",
                                                             "finished",
@@ -171,6 +183,9 @@ const char* name_of(Signal signal) {
                                                             "leave other",
                                                             "to be planned anew",
                                                             "taken away",
+                                                            "take out",
+                                                            "go on",
+                                                            "another place",
                                                             "next on agenda"};
   return kNames[static_cast<std::size_t>(signal)];
 }

@@ -15,7 +15,9 @@ enum class State {
   Bring,            ///< lets the plant bring it
   PerceiveItem,     ///< perceives it where it arrived
   CheckItem,        ///< is it the item that was to come?
+  TakeOut,          ///< a packed box is put to the aligner, as the operator says
   Plan,             ///< decides where it goes and by which motion, or takes a plan that was made ahead
+  AskOperator,      ///< does who operates want something else than what is planned?
   PutBack,          ///< it has no place: it goes back to the aligner from where it was moved to
   Send,             ///< starts the motion, or its next stage
   Moving,           ///< reads the plant's events
@@ -51,7 +53,8 @@ enum class Signal {
   RightItem,
   WrongItem,
   Planned,
-  Gone,  ///< the item is not believed to be anywhere
+  ToBeConfirmed,  ///< it is planned, and there is somebody who operates
+  Gone,           ///< the item is not believed to be anywhere
   NoPlace,
   Finished,  ///< this was done, whatever came of it
   Started,
@@ -78,6 +81,9 @@ enum class Signal {
   LeaveOther,  ///< another box stays where it is
   ToBePlannedAnew,
   TakenAway,     ///< it stands at the aligner for the last time
+  TakeOut,       ///< the operator wants a packed box taken out
+  GoOn,          ///< the operator wants nothing else
+  AnotherPlace,  ///< the operator chose one
   NextOnAgenda,  ///< it was packed because of another one, which goes on
 };
 inline constexpr int kSignals = static_cast<int>(Signal::NextOnAgenda) + 1;

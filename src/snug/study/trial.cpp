@@ -211,6 +211,9 @@ std::vector<record::Event> events_of(const session::SessionResult& result) {
                                     p.z(), 100.0 * send.predicted_success),
                         {{"predicted_success", send.predicted_success}}});
     }
+    for (const session::OperatorStep& step : item.operator_steps) {
+      events.push_back({step.time, "operator", item.id, session::describe(step), {}});
+    }
     for (const session::Recovery& recovery : item.recoveries) {
       std::string text = fmt::format("{}: {}", session::name_of(recovery.trouble), session::name_of(recovery.remedy));
       if (!recovery.detail.empty()) text += " (" + recovery.detail + ")";

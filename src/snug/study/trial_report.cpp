@@ -75,6 +75,14 @@ Json recoveries_as_json(const std::vector<session::Recovery>& recoveries) {
   return list;
 }
 
+Json steps_as_json(const std::vector<session::OperatorStep>& steps) {
+  Json list = Json::array();
+  for (const session::OperatorStep& one : steps) {
+    list.push_back({{"time", one.time}, {"order", one.order}, {"was_followed", one.was_followed}, {"text", one.text}});
+  }
+  return list;
+}
+
 Json attempts_as_json(const std::vector<planning::Tried>& attempts) {
   Json list = Json::array();
   for (const planning::Tried& one : attempts) {
@@ -122,6 +130,7 @@ Json as_json(const session::ItemReport& item, const study::TrueItem& truth) {
     json["sends"] = sends_as_json(item, truth);
   }
   if (!item.sends.empty() || !item.recoveries.empty()) json["recoveries"] = recoveries_as_json(item.recoveries);
+  if (!item.operator_steps.empty()) json["operator"] = steps_as_json(item.operator_steps);
   json["seconds"] = as_json(item.seconds);
   json["attempts"] = item.attempts;
   json["failed_attempts"] = attempts_as_json(item.failed_attempts);
@@ -253,6 +262,9 @@ std::string format_item(const session::ItemReport& item, const study::TrueItem& 
         item.seconds.travel, item.seconds.carry, item.seconds.regrasp, item.seconds.insert, item.seconds.push,
         item.seconds.wait,
         item.end == session::ItemEnd::Placed ? std::string() : fmt::format("  {}", session::name_of(item.end)));
+  }
+  for (const session::OperatorStep& one : item.operator_steps) {
+    text += fmt::format("         at {:.1f} s operator: {}\n", one.time, describe(one));
   }
   for (const session::Recovery& one : item.recoveries) {
     text += fmt::format("         at {:.1f} s {}: {}{}\n", one.time, session::name_of(one.trouble),

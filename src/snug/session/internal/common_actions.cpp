@@ -171,6 +171,10 @@ Signal act(State state, Run& run) {
       return check_item(run);
     case State::Plan:
       return plan_item(run);
+    case State::TakeOut:
+      return take_out(run);
+    case State::AskOperator:
+      return ask_operator(run);
     case State::PutBack:
       return put_back(run);
     case State::Send:

@@ -69,7 +69,7 @@ struct JsonEnum<session::Remedy> {
 };
 template <>
 struct JsonEnum<session::ItemEnd> {
-  static constexpr auto all = all_up_to<session::ItemEnd, session::ItemEnd::Rejected>();
+  static constexpr auto all = all_up_to<session::ItemEnd, session::ItemEnd::TakenOut>();
 };
 template <>
 struct JsonEnum<session::StopReason> {

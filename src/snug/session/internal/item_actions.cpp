@@ -59,7 +59,11 @@ Decided decide(Run& run) {
   const plant::Feedback& robot = run.executor.robot();
   belief.robot = {robot.X_WE, robot.q, robot.io};
   belief.next = run.agenda.follower_of(task.item);
-  return run.decisions.decide(belief, task.item);
+  if (!task.asked_place) return run.decisions.decide(belief, task.item);
+  planning::BeliefSnapshot asked = belief;
+  asked.chosen.assign(asked.items.size(), std::nullopt);
+  asked.chosen[task.item.slot()] = task.asked_place;
+  return run.decisions.decide(asked, task.item);
 }
 
 /// What was packed before, and is seen outside or nowhere now, is not packed any more.
@@ -150,7 +154,7 @@ void check_load(Run& run, const std::vector<std::optional<Pose>>& before) {
 
 bool is_taken_away(ItemEnd end) {
   return end == ItemEnd::NoPlace || end == ItemEnd::Infeasible || end == ItemEnd::NotHeld || end == ItemEnd::Returned ||
-         end == ItemEnd::WrongItem || end == ItemEnd::Gone;
+         end == ItemEnd::WrongItem || end == ItemEnd::Gone || end == ItemEnd::Skipped;
 }
 
 /// Why the order is at its end.
@@ -191,6 +195,7 @@ Signal take_next_item(Run& run) {
   auto ahead = run.decisions.take_ahead(item);
   run.executor.refresh();
   begin_item(run, item, std::nullopt);
+  if (!ahead && run.desk.wants_out(agenda.top().id)) return Signal::TakeOut;
   if (!ahead) return Signal::ItemToBring;
   agenda.top().ready = std::move(ahead->decided);
   return ahead->is_seen ? Signal::ItemIsHere : Signal::ItemIsUnseen;
@@ -243,11 +248,19 @@ Signal plan_item(Run& run) {
   run.log(event_of(decided, run.executor.time()));
   run.belief.edit().items[task.item.slot()] = decided.plan.standing;
   task.attempts += decided.plan.attempts;
+  const bool is_found = decided.plan.outcome == planning::PlanOutcome::Found;
+  const bool has_operator = run.desk.is_manned() && run.agenda.under_way.size() == 1;
+  const bool is_asked = std::exchange(task.asked_place, std::nullopt).has_value();
+  if (is_asked && !is_found) {  // what was planned before stays
+    refuse_place(run, decided.plan.reason);
+    return Signal::ToBeConfirmed;
+  }
   task.reason = decided.plan.reason;
-  if (decided.plan.outcome == planning::PlanOutcome::Found) {
+  if (!is_asked) task.tried = decided.plan.tried;
+  if (is_found) {
     task.plan = std::move(decided.plan);
     task.stage = 0;
-    return Signal::Planned;
+    return has_operator ? Signal::ToBeConfirmed : Signal::Planned;
   }
   const bool is_infeasible = decided.plan.outcome == planning::PlanOutcome::Infeasible;
   task.end = is_infeasible ? ItemEnd::Infeasible : ItemEnd::NoPlace;

@@ -87,6 +87,8 @@ Signal look_ahead(Run& run) {
   const ItemTask& task = run.agenda.top();
   const auto next = run.agenda.follower_of(task.item);
   if (!next || (run.options.is_interrupted && run.options.is_interrupted())) return Signal::Finished;
+  // A box that is taken out goes to the aligner: nothing may stand there.
+  if (run.desk.wants_out(run.belief.now().items[next->slot()].id)) return Signal::Finished;
   const planning::Attempt& attempt = *task.plan->best;
   if (!perceive_plainly(run, task.item) || assess_item(run, attempt.planned) != Trouble::None) return Signal::Finished;
   planning::BeliefSnapshot& belief = run.belief.edit();

@@ -7,6 +7,7 @@
 #include "snug/session/belief.hpp"
 #include "snug/session/decisions.hpp"
 #include "snug/session/executor.hpp"
+#include "snug/session/internal/operator_desk.hpp"
 #include "snug/session/session.hpp"
 
 namespace snug::session::internal {
@@ -19,6 +20,7 @@ struct Run {
   Executor executor;
   Agenda agenda;
   Decisions decisions;
+  OperatorDesk desk;
   std::optional<StopReason> stop;  ///< set: nothing more can be done
 
   [[nodiscard]] planning::Scene scene() const { return {belief.now(), cell}; }
@@ -37,6 +39,11 @@ struct Run {
 [[nodiscard]] Signal finish_item(Run& run);
 [[nodiscard]] Signal resume_item(Run& run);
 [[nodiscard]] Signal go_home(Run& run);
+// Who operates (operator_actions.cpp)
+[[nodiscard]] Signal ask_operator(Run& run);
+[[nodiscard]] Signal take_out(Run& run);
+/// The place that the operator chose cannot be.
+void refuse_place(Run& run, const std::string& why);
 // The motion (motion_actions.cpp)
 [[nodiscard]] Signal send_motion(Run& run);
 [[nodiscard]] Signal follow_motion(Run& run);
