@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -57,6 +58,17 @@ simulated_plant::TakenUp take_up(const session::ResumePoint& point) {
   return begin;
 }
 
+/// What who operates says, as it comes.
+session::OperatorSource read_operator(const PackOptions& options, const model::Scenario& scenario) {
+  std::vector<std::string> items;
+  if (const model::Sequence* sequence = model::find_sequence(scenario, options.sequence)) {
+    for (const model::Item& item : sequence->items) items.push_back(item.parcel);
+  }
+  const auto warn = [](const std::string& text) { std::fprintf(stderr, "snug: %s\n", text.c_str()); };
+  const auto file = std::make_shared<session::OperatorFile>(*options.operator_file, std::move(items), warn);
+  return [file] { return file->read(); };
+}
+
 /// What only a robot at ur://HOST has.
 void refuse_options_of_a_robot(const PackOptions& options) {
   if (options.plant.starts_with("ur://")) return;
@@ -83,6 +95,7 @@ struct PackFiles {
     add_file(outputs, "--live", options.live);
     NamedFiles inputs = files_of(options.scenario, options.changes, scenario);
     add_file(inputs, "--resume", options.resume);
+    if (options.operator_file != "-") add_file(inputs, "--operator", options.operator_file);
     expect_distinct(inputs, outputs);
     program = reserve(options.program);
     plan = reserve(options.plan);
@@ -183,6 +196,7 @@ int run_pack(const PackOptions& options) {
     session.resume = session::find_resume_point(session::load_log(*options.resume), *options.resume);
     plant.taken_up = take_up(*session.resume);
   }
+  if (options.operator_file) session.operator_orders = read_operator(options, scenario);
   const bool is_served = options.plant != "simulated";
   refuse_options_of_a_robot(options);
   if (!is_served) (void)make_frames(options, scenario);  // says that it cannot be

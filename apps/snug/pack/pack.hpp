@@ -46,10 +46,11 @@ struct PackOptions {
   std::optional<std::string> robot;          ///< absent: the scenario's, where its file is there; "none"
   std::optional<int> monte_carlo;
   std::optional<std::string> program, plan, record;
-  std::optional<std::string> log;           ///< of events
-  std::optional<std::string> live;          ///< frames for who watches; with `record`
-  std::optional<std::string> resume;        ///< log of the session that is gone on with
-  std::optional<std::string> save_beliefs;  ///< folder
+  std::optional<std::string> log;            ///< of events
+  std::optional<std::string> live;           ///< frames for who watches; with `record`
+  std::optional<std::string> resume;         ///< log of the session that is gone on with
+  std::optional<std::string> operator_file;  ///< what who operates says; "-": standard input
+  std::optional<std::string> save_beliefs;   ///< folder
   bool json = false;
 };
 

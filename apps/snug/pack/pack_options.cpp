@@ -28,6 +28,7 @@ constexpr const char* kPackExamples = R"(Examples:
   snug pack scenarios/box-demonstrator.yaml --sequence 2 --program out.csv --plan out.json --monte-carlo 10
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --save-belief beliefs --log session.jsonl
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --resume session.jsonl --log whole.jsonl
+  printf 'next hold\nnext elsewhere\nnext go\n' | snug pack scenarios/box-demonstrator.yaml --sequence 1 --operator -
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1
 Programs of such a run need the same --items, --container and --pallet in simulate, check and export; recordings hold them.)";
 
@@ -192,6 +193,11 @@ void add_pack(CLI::App& app, Action& action) {
                   "go on with a session that was killed or interrupted, by its log: items that were done with stay, "
                   "that which was under way comes anew; all else has to be said as it was")
       ->type_name("FILE.jsonl");
+  verb.add_option("--operator", options->operator_file,
+                  "what a person wants otherwise, line by line, from a file that may grow or from standard input (-): "
+                  "AT hold, go, skip, elsewhere, place NUMBER or take-out ITEM, with AT an item or next "
+                  "(docs/session.md)")
+      ->type_name("FILE|-");
   verb.add_option("--save-belief", options->save_beliefs,
                   "write what is believed before each decision into this folder: `snug plan` repeats the decision")
       ->type_name("DIR");
