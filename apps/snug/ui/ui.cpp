@@ -29,7 +29,7 @@ int run_ui(const UiOptions& options) {
                                 "a tote cell with a UR10, beside a conveyor: what a robot reaches is shown",
                                 shipped_folder() / "scenarios/box-demonstrator.yaml"});
   workspace::Service service(settings);
-  serve::ApiServer server(options.port, workspace::kLargestUpload,
+  serve::ApiServer server(options.port, workspace::kLargestMesh,
                           {{"/", "text/html; charset=utf-8", std::string(workspace_page())},
                            {"/workspace.js", "text/javascript; charset=utf-8", std::string(workspace_script())},
                            {"/workspace.css", "text/css; charset=utf-8", std::string(workspace_style())}},

@@ -19,13 +19,14 @@
 #include "snug/core/text.hpp"
 #include "snug/model/items_file.hpp"
 #include "snug/model/scenario.hpp"
+#include "snug/workspace/arm_edit.hpp"
 
 namespace snug::workspace {
 namespace {
 
 constexpr std::string_view kNameRule =
-    "at most 100 letters, digits, '.', '_' and '-', a letter or digit first, ending in .yaml or .csv (files of runs: "
-    ".jsonl, .txt, .h5, .program.csv, .html, .live)";
+    "at most 100 letters, digits, '.', '_' and '-', a letter or digit first, ending in .yaml or .csv (arms: .urdf, "
+    ".stl, .obj, .dae; files of runs: .jsonl, .txt, .h5, .program.csv, .html, .live, .operator, .png, .glb)";
 
 bool is_letter_or_digit(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'); }
 
@@ -75,7 +76,7 @@ FileKind kind_of_name(std::string_view name) {
   const bool is_plain =
       !name.empty() && name.size() <= kLongestName && is_letter_or_digit(name.front()) &&
       std::ranges::all_of(name, [](char c) { return is_letter_or_digit(c) || c == '.' || c == '_' || c == '-'; });
-  static constexpr std::array<std::pair<std::string_view, FileKind>, 8> kEndings = {
+  static constexpr std::array<std::pair<std::string_view, FileKind>, 18> kEndings = {
       {{".yaml", FileKind::Scenario},
        {".program.csv", FileKind::Program},
        {".csv", FileKind::Items},
@@ -83,7 +84,17 @@ FileKind kind_of_name(std::string_view name) {
        {".txt", FileKind::Words},
        {".h5", FileKind::Recording},
        {".html", FileKind::Report},
-       {".live", FileKind::Live}}};
+       {".live", FileKind::Live},
+       {".operator", FileKind::Operator},
+       {".png", FileKind::Picture},
+       {".glb", FileKind::Scene},
+       {".urdf", FileKind::Urdf},
+       {".stl", FileKind::Mesh},
+       {".obj", FileKind::Mesh},
+       {".dae", FileKind::Mesh},
+       {".STL", FileKind::Mesh},
+       {".OBJ", FileKind::Mesh},
+       {".DAE", FileKind::Mesh}}};
   for (const auto& [ending, kind] : kEndings) {
     if (is_plain && name.ends_with(ending)) return kind;
   }
@@ -122,7 +133,7 @@ std::vector<Entry> Folder::list() const {
 
 std::string Folder::read_from(const std::string& name, std::uintmax_t offset, std::size_t most) const {
   const FileKind kind = kind_of_name(name);
-  const bool is_written_here = kind == FileKind::Scenario || kind == FileKind::Items;
+  const bool is_written_here = kind == FileKind::Scenario || kind == FileKind::Items || kind == FileKind::Urdf;
   struct stat status {};
   const Descriptor file = open_file(folder_.get(), name, is_written_here ? kLargestUpload : kLargestRead, status);
   const auto size = static_cast<std::uintmax_t>(status.st_size);
@@ -155,10 +166,17 @@ std::uintmax_t Folder::size(const std::string& name) const {
 
 void Folder::check(const std::string& name, std::string_view text) const {
   const FileKind kind = kind_of_name(name);
-  if (kind != FileKind::Scenario && kind != FileKind::Items)
-    throw InputError(name, "", "a file that runs write", "a scenario (.yaml) or items (.csv)");
-  if (text.size() > kLargestUpload)
-    throw InputError(name, "", std::to_string(text.size()) + " bytes", "at most " + std::to_string(kLargestUpload));
+  if (kind != FileKind::Scenario && kind != FileKind::Items && kind != FileKind::Urdf && kind != FileKind::Mesh)
+    throw InputError(name, "", "a file that runs write",
+                     "a scenario (.yaml), items (.csv), an arm (.urdf) or its mesh");
+  const std::size_t largest = kind == FileKind::Mesh ? kLargestMesh : kLargestUpload;
+  if (text.size() > largest)
+    throw InputError(name, "", std::to_string(text.size()) + " bytes", "at most " + std::to_string(largest));
+  if (kind == FileKind::Mesh) return;  // read with the arm that it is of
+  if (kind == FileKind::Urdf) {
+    (void)read_arm_facts(std::string(text), name);
+    return;
+  }
   if (kind == FileKind::Items) {
     (void)model::parse_orders_csv(text, name);
     return;
@@ -198,6 +216,22 @@ void Folder::remove(const std::string& name) const {
       ::fstatat(folder_.get(), name.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(status.st_mode);
   if (!is_file) throw InputError(name, "", "no file", "a file of the folder");
   if (::unlinkat(folder_.get(), name.c_str(), 0) != 0) throw OutputError(name, std::strerror(errno));
+}
+
+void Folder::append(const std::string& name, const std::string& line) const {
+  if (kind_of_name(name) != FileKind::Operator) throw InputError("name", "", name, "a file that ends in .operator");
+  constexpr int kFlags = O_WRONLY | O_APPEND | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
+  const Descriptor file(::openat(folder_.get(), name.c_str(), kFlags));
+  struct stat status {};
+  if (!file.is_open() || ::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode))
+    throw InputError(name, "", "no file that can be written", "a run that who operates can step into");
+  std::string_view rest = line;
+  while (!rest.empty()) {
+    const ssize_t count = ::write(file.get(), rest.data(), rest.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) throw OutputError(name, std::strerror(errno));
+    rest.remove_prefix(static_cast<std::size_t>(count));
+  }
 }
 
 Descriptor Folder::create(const std::string& name) const {

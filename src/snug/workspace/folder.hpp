@@ -13,6 +13,7 @@
 namespace snug::workspace {
 
 inline constexpr std::size_t kLargestUpload = std::size_t{4} << 20U;  ///< bytes of a text that is written
+inline constexpr std::size_t kLargestMesh = std::size_t{16} << 20U;   ///< bytes of a mesh that is written
 inline constexpr std::size_t kLargestRead = std::size_t{256} << 20U;  ///< bytes of what runs leave
 inline constexpr std::size_t kLongestName = 100;                      ///< bytes
 inline constexpr std::size_t kMostEntries = 10000;                    ///< in a list
@@ -26,6 +27,11 @@ enum class FileKind {
   Program,    ///< NAME.program.csv
   Report,     ///< NAME.html
   Live,       ///< NAME.live, frames that `snug pack --live` writes
+  Operator,   ///< NAME.operator, what who operates says: `snug pack --operator` reads it
+  Picture,    ///< NAME.png
+  Scene,      ///< NAME.glb
+  Urdf,       ///< NAME.urdf, an arm
+  Mesh,       ///< NAME.stl, .obj or .dae, of an arm
 };
 
 struct Entry {
@@ -57,7 +63,8 @@ class Folder {
   /// Whether there is a regular file of that name.
   [[nodiscard]] bool has(const std::string& name) const;
   [[nodiscard]] std::uintmax_t size(const std::string& name) const;
-  /// Scenario or items, read as the command line reads them before anything is written; then in one step in the place
+  /// Scenario or items, read as the command line reads them before anything is written, arms (arm_edit.hpp) and meshes;
+  /// then in one step in the place
   /// of what was there. Throws InputError: with file, line and key for a text that cannot be used; for a log; for a
   /// file that is being written by another. Throws OutputError when writing fails; then what was there stays.
   void write(const std::string& name, std::string_view text) const;
@@ -65,6 +72,8 @@ class Folder {
   void check(const std::string& name, std::string_view text) const;
   /// Throws InputError where there is no such file.
   void remove(const std::string& name) const;
+  /// One line more at the end of what who operates says. Throws InputError where there is no such file.
+  void append(const std::string& name, const std::string& line) const;
   /// A file that was not there, open for writing. Throws InputError where something has that name.
   [[nodiscard]] Descriptor create(const std::string& name) const;
   /// As it was given.

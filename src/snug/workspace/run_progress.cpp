@@ -34,13 +34,24 @@ void ProgressFold::add(const session::SessionEvent& one) {
     said_.agent = started->agent;
     said_.plant = started->plant;
     said_.items = static_cast<int>(started->items.size());
+    ids_.clear();
+    for (const model::ParcelId& id : started->items) ids_.push_back(id.value);
   } else if (const auto* counted = std::get_if<session::event::Counted>(&one)) {
     said_.planned_percent = counted->planned_percent;
     said_.time = counted->time;
+  } else if (const auto* begun = std::get_if<session::event::ItemStarted>(&one)) {
+    if (!begun->because_of) said_.now = ids_[begun->item.slot()];
+  } else if (const auto* done = std::get_if<session::event::ItemEnded>(&one)) {
+    if (said_.now == ids_[done->item.slot()]) said_.now = said_.held = "";
+  } else if (const auto* operated = std::get_if<session::event::Operated>(&one)) {
+    const bool is_hold = operated->order.ends_with(" hold") && operated->was_followed;
+    const bool is_end = operated->order.ends_with(" go") || operated->order.ends_with(" skip");
+    if (is_hold || is_end) said_.held = is_hold ? said_.now : std::string();
   } else if (const auto* stopped = std::get_if<session::event::Stopped>(&one)) {
     said_.stopped = stopped->text;
   } else if (const auto* ended = std::get_if<session::event::SessionEnded>(&one)) {
     said_.is_over = true;
+    said_.now = said_.held = "";
     said_.time = ended->time;
     said_.failure = ended->text;
   }
@@ -66,7 +77,9 @@ void LogReader::read(const Folder& folder, const std::string& name) {
     ++lines_;
     if (!is_passed_over(line)) {
       check_utf8(line, name);
-      fold_.add(session::parse_event(line, name, lines_));
+      const session::SessionEvent one = session::parse_event(line, name, lines_);
+      order_.add(one, name + ":" + std::to_string(lines_));
+      fold_.add(one);
       is_new = true;
     }
     offset_ += line.size() + 1;

@@ -30,6 +30,8 @@ struct RunProgress {
   double time = 0.0;             ///< s, of the plant
   /// The session said its end. False: it goes on, or was killed (`snug pack --resume` goes on with it).
   bool is_over = false;
+  std::string now;      ///< id of the item that is under way; empty: none
+  std::string held;     ///< id of the item at which who operates is waited for; empty: none
   std::string stopped;  ///< why no more items came, for people
   std::string failure;  ///< of a session that is over; empty: none
   std::vector<BoxProgress> boxes;
@@ -43,7 +45,8 @@ class ProgressFold {
   [[nodiscard]] RunProgress progress() const;
 
  private:
-  RunProgress said_;  ///< without what the result counts
+  std::vector<std::string> ids_;  ///< by ItemIndex
+  RunProgress said_;              ///< without what the result counts
   session::ResultFold fold_;
 };
 
@@ -59,6 +62,7 @@ class LogReader {
  private:
   std::uintmax_t offset_ = 0;  ///< behind the last whole line
   int lines_ = 0;
+  session::EventOrder order_;
   ProgressFold fold_;
   RunProgress progress_;  ///< that of the fold
 };

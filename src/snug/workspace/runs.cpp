@@ -18,6 +18,7 @@
 
 #include "snug/core/input_error.hpp"
 #include "snug/core/text.hpp"
+#include "snug/session/operator.hpp"
 
 extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leaves it to the program
 
@@ -26,7 +27,8 @@ namespace {
 
 constexpr std::size_t kLongestWord = 200;      // bytes
 constexpr std::chrono::seconds kPatience(10);  // for a process that was interrupted
-constexpr std::array<const char*, 6> kEndings = {".txt", ".jsonl", ".h5", ".program.csv", ".html", ".live"};
+constexpr std::array<const char*, 9> kEndings = {".txt",  ".jsonl",    ".h5",  ".program.csv", ".html",
+                                                 ".live", ".operator", ".png", ".glb"};
 
 void require_kind(const std::string& name, FileKind kind, const char* key, const char* expected) {
   if (kind_of_name(name) != kind) throw InputError("run", key, name, expected);
@@ -96,6 +98,28 @@ const char* name_of(RunState state) {
   return "";
 }
 
+namespace {
+
+void check_plant(const RunRequest& request) {
+  const auto is_address = [](const std::string& word, std::initializer_list<std::string_view> schemes) {
+    return word.size() <= kLongestWord && is_printable(word) && word.find(' ') == std::string::npos &&
+           std::ranges::any_of(schemes, [&](std::string_view one) { return word.starts_with(one); });
+  };
+  if (!request.plant.empty() && !is_address(request.plant, {"click://", "click+ipc://", "ur://"}))
+    throw InputError("run", "plant", printable(request.plant, kLongestWord),
+                     "click://HOST:PORT, click+ipc://PATH or ur://HOST");
+  if (!request.observe.empty() && !is_address(request.observe, {"tcp://", "ipc://"}))
+    throw InputError("run", "observe", printable(request.observe, kLongestWord), "tcp://HOST:PORT or ipc://PATH");
+  const bool is_robot = request.plant.starts_with("ur://");
+  if (!is_robot && (!request.observe.empty() || request.moves_a_robot))
+    throw InputError("run", request.moves_a_robot ? "moves_a_robot" : "observe", request.plant, "a plant ur://HOST");
+  static constexpr std::array<std::string_view, 5> kKinds = {"", "exact", "noisy", "dead-reckoning", "camera"};
+  if (std::ranges::find(kKinds, request.perception) == kKinds.end())
+    throw InputError("run", "perception", printable(request.perception, 40), "exact, noisy, dead-reckoning or camera");
+}
+
+}  // namespace
+
 void check(const RunRequest& request) {
   require_run_name(request.name);
   require_kind(request.scenario, FileKind::Scenario, "scenario", "a file that ends in .yaml");
@@ -107,6 +131,16 @@ void check(const RunRequest& request) {
     throw InputError("run", "sequence", printable(sequence, kLongestWord), "the name of a sequence or an order");
   if (request.tempo && !(*request.tempo >= 0.5 && *request.tempo <= 1.0))
     throw InputError("run", "tempo", std::to_string(*request.tempo), "0.5 to 1");
+  check_plant(request);
+}
+
+std::vector<std::string> make_command(const std::string& name, const std::string& what) {
+  require_run_name(name);
+  if (what == "picture") return {"snug", "picture", name + ".h5", "-o", name + ".png"};
+  if (what == "film")
+    return {"snug", "picture", name + ".h5", "--video", name + "-film", "--fps", "10", "--speed", "4"};
+  if (what == "glb") return {"snug", "export", name + ".h5", "--format", "glb", "-o", name + ".glb"};
+  throw InputError("request", "what", printable(what, 40), "picture, film or glb");
 }
 
 std::vector<std::string> command_of(const RunRequest& request) {
@@ -114,7 +148,12 @@ std::vector<std::string> command_of(const RunRequest& request) {
   const auto add = [&](const char* option, const std::string& value) { words.insert(words.end(), {option, value}); };
   if (!request.items.empty()) add("--items", request.items);
   add("--sequence", request.sequence);
-  add("--plant-seed", std::to_string(request.plant_seed));
+  const bool is_served = !request.plant.empty();
+  if (is_served) add("--plant", request.plant);
+  if (!request.observe.empty()) add("--observe", request.observe);
+  if (request.moves_a_robot) words.emplace_back("--yes-this-moves-a-robot");
+  if (!request.perception.empty()) add("--perception", request.perception);
+  if (!is_served) add("--plant-seed", std::to_string(request.plant_seed));
   if (request.tempo) {
     std::string text = std::to_string(*request.tempo);
     text.resize(text.find_last_not_of('0') + 1);
@@ -124,8 +163,10 @@ std::vector<std::string> command_of(const RunRequest& request) {
   if (request.threads > 0) add("--threads", std::to_string(request.threads));
   if (!request.resumes.empty()) add("--resume", request.resumes + ".jsonl");
   add("--log", request.name + ".jsonl");
-  add("--live", request.name + ".live");
+  add("--operator", request.name + ".operator");
   add("--program", request.name + ".program.csv");
+  if (is_served) return words;  // what it records is what serves it
+  add("--live", request.name + ".live");
   add("-o", request.name + ".h5");
   return words;
 }
@@ -181,6 +222,7 @@ void Runs::start(const RunRequest& request) {
       throw InputError("run", "name", request.name, "a name that is free: there is a file " + request.name + ending);
   }
   Job job{command_of(request), folder_.create(request.name + ".txt")};
+  (void)folder_.create(request.name + ".operator");    // empty: nobody has said anything
   (void)::flock(job.output.get(), LOCK_EX | LOCK_NB);  // nobody else knows of it yet
   print_to(job.output.get(), "$ " + as_shell_line(job.words) + "\n");
   jobs_.emplace(request.name, std::move(job));
@@ -261,6 +303,26 @@ bool Runs::stop(const std::string& name) {
   const int before = interrupts_[name]++;
   if (found->second > 0) ::kill(found->second, before == 0 ? SIGINT : SIGKILL);
   return true;
+}
+
+bool Runs::stop_now(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  const auto found = processes_.find(name);
+  if (found == processes_.end() || found->second <= 0) return false;
+  ++interrupts_[name];
+  ::kill(found->second, SIGKILL);
+  return true;
+}
+
+void Runs::operate(const std::string& name, const std::string& line) {
+  require_run_name(name);
+  const std::optional<session::OperatorOrder> order = session::parse_operator_order(line, "order", 1);
+  if (!order || line.find_first_of("\n\r") != std::string::npos)
+    throw InputError("order", "", printable(line, 60), "one line: AT ACTION");
+  const RunStatus now = status(name);
+  if (now.state != RunState::Running && now.state != RunState::Waiting)
+    throw InputError("run", "name", name, "a run that goes on");
+  folder_.append(name + ".operator", session::format_operator_order(*order) + "\n");
 }
 
 void Runs::remove(const std::string& name) {
@@ -405,21 +467,34 @@ void Runs::make_report(const std::string& name) {
       !S_ISREG(recording.st_mode))
     throw InputError("run", "name", name, "a run with a recording " + name + ".h5: it is written at the end");
   if (has_page && page.st_mtime >= recording.st_mtime) return;
+  run_to_end({"snug", "report", name + ".h5", "-o", name + ".html"}, "report");
+}
+
+void Runs::make(const std::string& name, const std::string& what) {
+  const std::vector<std::string> words = make_command(name, what);
+  const std::lock_guard one_at_a_time(reports_);
+  struct stat status {};
+  if (::fstatat(folder_.descriptor(), (name + ".h5").c_str(), &status, AT_SYMLINK_NOFOLLOW) != 0 ||
+      !S_ISREG(status.st_mode))
+    throw InputError("run", "name", name, "a run with a recording " + name + ".h5: it is written at the end");
+  run_to_end(words, "what is made of it");
+}
+
+void Runs::run_to_end(const std::vector<std::string>& words, const char* what) {
   std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC | O_NONBLOCK) != 0)
-    throw InputError("run", "report", std::strerror(errno), "a report");
+  if (::pipe2(ends.data(), O_CLOEXEC | O_NONBLOCK) != 0) throw InputError("run", what, std::strerror(errno), "a pipe");
   const Descriptor reading(ends[0]);
   int code = 0;
   {
     const Descriptor writing(ends[1]);  // who prints more than the pipe holds does not wait: the rest is lost
-    code = run({"snug", "report", name + ".h5", "-o", name + ".html"}, writing.get(), "");
+    code = run(words, writing.get(), "");
   }
   if (code == 0) return;
   std::string said = "\n";
   std::array<char, 4096> buffer{};
   if (const ssize_t count = ::read(reading.get(), buffer.data(), buffer.size()); count > 0)
     said.append(buffer.data(), static_cast<std::size_t>(count));
-  throw InputError("run", "report", find_message(said), "a recording that snug report can show");
+  throw InputError("run", what, find_message(said), "a recording that " + words[0] + " " + words[1] + " can read");
 }
 
 }  // namespace snug::workspace

@@ -30,12 +30,18 @@ struct RunRequest {
   std::string sequence;
   std::uint64_t plant_seed = 0;
   std::optional<double> tempo;  ///< 0.5 to 1
+  std::string plant;            ///< where a cell is that another program serves, or a robot; empty: simulated
+  std::string observe;          ///< of a robot: where boxes are told; empty: nowhere
+  bool moves_a_robot = false;   ///< one that is not on this machine
+  std::string perception;       ///< of `plant`; empty: exact
   std::string resumes;          ///< name of a run that was killed; empty: none
   int threads = 0;              ///< 0: all cores
 };
 
 /// "snug", "pack", ... for a shell in the folder; each a word of its own.
 [[nodiscard]] std::vector<std::string> command_of(const RunRequest& request);
+/// "snug", "picture", ... that make `what` of a run: picture, film or glb. Throws InputError for others.
+[[nodiscard]] std::vector<std::string> make_command(const std::string& name, const std::string& what);
 /// The words as one line that a shell takes apart in the same way.
 [[nodiscard]] std::string as_shell_line(const std::vector<std::string>& words);
 /// Throws InputError for names that kind_of_name() refuses, numbers out of range, and words that are none.
@@ -79,6 +85,10 @@ class Runs {
   void start(const RunRequest& request);
   /// It ends after the item at hand; at a second time at once. False: it is no run of this process.
   bool stop(const std::string& name);
+  /// At once, whatever it does: a robot that it moves stands within 0.2 s of its clock. False: as stop().
+  bool stop_now(const std::string& name);
+  /// A line of who operates. Throws InputError for what is no order, and for a run that does not go on.
+  void operate(const std::string& name, const std::string& line);
   /// All its files. Throws InputError for no run, and for one that goes on.
   void remove(const std::string& name);
   /// Throws InputError where there is no run of that name.
@@ -89,6 +99,9 @@ class Runs {
   /// Makes NAME.html of NAME.h5 with `snug report`, unless it is there and newer. Throws InputError with what the
   /// command said.
   void make_report(const std::string& name);
+  /// Makes what can be taken away from NAME.h5 by the command that make_command() says. Throws InputError as
+  /// make_report().
+  void make(const std::string& name, const std::string& what);
 
  private:
   struct Job {
@@ -98,6 +111,8 @@ class Runs {
   void work();
   /// Runs the words in the folder; their exit code, 128 and more for a signal.
   int run(const std::vector<std::string>& words, int output, const std::string& name);
+  /// Runs a short command in the folder. Throws InputError with what it said where it fails.
+  void run_to_end(const std::vector<std::string>& words, const char* what);
   /// Nothing where the files are those of no run. `reads`: whether it may read a log that nobody has read.
   [[nodiscard]] std::optional<RunStatus> look(const std::string& name, const std::vector<std::string>& files,
                                               bool reads = true);

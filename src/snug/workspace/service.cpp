@@ -21,6 +21,9 @@
 #include "snug/model/scenario.hpp"
 #include "snug/replay/cell_form.hpp"
 #include "snug/runs/reach_map.hpp"
+#include "snug/workspace/arm_edit.hpp"
+#include "snug/workspace/catalogue.hpp"
+#include "snug/workspace/decision_list.hpp"
 
 namespace snug::workspace {
 namespace {
@@ -72,7 +75,8 @@ Json summary_of(const RunStatus& status) {
           {"command", status.command}, {"message", status.message},      {"sequence", progress.sequence},
           {"plant", progress.plant},   {"items", progress.items},        {"done", progress.done},
           {"packed", progress.packed}, {"lost", progress.lost},          {"percent", progress.planned_percent},
-          {"time", progress.time},     {"stopped", progress.stopped},    {"files", status.files}};
+          {"time", progress.time},     {"stopped", progress.stopped},    {"files", status.files},
+          {"now", progress.now},       {"held", progress.held}};
 }
 
 Json as_json(const RunStatus& status) {
@@ -102,11 +106,17 @@ Json facts_of(FileKind kind, const std::string& text, const std::string& name) {
     }
     return {{"lines", std::move(lines)}, {"sequences", std::move(orders)}};
   }
+  if (kind == FileKind::Urdf) {
+    const ArmFacts facts = read_arm_facts(text, name);
+    return {{"robot", facts.name}, {"links", facts.links}};
+  }
+  if (kind == FileKind::Mesh) return Json::object();
   const model::Scenario scenario = model::parse_scenario(text, name);
   Json sequences = Json::array(), containers = Json::array();
   for (const model::Sequence& sequence : scenario.sequences) sequences.push_back(sequence.name);
   for (const model::Container& container : scenario.containers)
-    containers.push_back({{"name", container.name}, {"inner_size_mm", in_mm(container.inner_size)}});
+    containers.push_back(
+        {{"name", container.name}, {"inner_size_mm", in_mm(container.inner_size)}, {"walls", container.has_walls}});
   return {{"sequences", std::move(sequences)},
           {"containers", std::move(containers)},
           {"target", scenario.target},
@@ -192,6 +202,12 @@ ApiAnswer Service::route(const ApiRequest& request) {
   if (parts.size() == 2 && what == "scene" && is_post) return answer_scene(name, request.body);
   if (parts.size() == 2 && what == "reach" && is_post) return answer_reach(name, request.body);
   if (parts.size() == 2 && what == "move" && is_post) return answer_move(name, request.body);
+  if (parts.size() == 1 && what == "catalogue" && is_get) {
+    ApiAnswer answer;
+    answer.body = format_catalogue();
+    return answer;
+  }
+  if (parts.size() == 2 && (what == "cup" || what == "arm") && is_post) return answer_edit(what, name, request.body);
   if (parts.size() == 2 && what == "runs") return answer_run(request, name, "");
   if (parts.size() == 3 && what == "runs") return answer_run(request, name, parts[2]);
   if (parts.size() == 2 && what == "templates" && is_get) {
@@ -204,8 +220,10 @@ ApiAnswer Service::route(const ApiRequest& request) {
 
 ApiAnswer Service::answer_folder() {
   Json scenarios = Json::array(), items = Json::array(), runs = Json::array(), templates = Json::array();
+  Json arms = Json::array();
   for (const Entry& entry : folder_.list()) {
     if (entry.kind == FileKind::Scenario) scenarios.push_back({{"name", entry.name}, {"bytes", entry.bytes}});
+    if (entry.kind == FileKind::Urdf) arms.push_back({{"name", entry.name}, {"bytes", entry.bytes}});
     if (entry.kind == FileKind::Items) items.push_back({{"name", entry.name}, {"bytes", entry.bytes}});
   }
   for (const RunStatus& status : runs_.list(kListPatience)) runs.push_back(summary_of(status));
@@ -215,6 +233,7 @@ ApiAnswer Service::answer_folder() {
                     {"version", settings_.version},
                     {"scenarios", std::move(scenarios)},
                     {"items", std::move(items)},
+                    {"arms", std::move(arms)},
                     {"runs", std::move(runs)},
                     {"templates", std::move(templates)}});
 }
@@ -229,11 +248,15 @@ ApiAnswer Service::answer_file(const ApiRequest& request, const std::string& nam
     return answer;
   }
   if (request.method == "PUT") {
-    folder_.write(name, request.body);
-    return as_answer({{"name", name}, {"facts", facts_of(kind, request.body, (folder_.path() / name).string())}});
+    if (kind != FileKind::Mesh && request.body.size() > kLargestUpload)
+      return refusal(413, "at most " + std::to_string(kLargestUpload) + " bytes");
+    const auto has = [this](const std::string& file) { return folder_.has(file); };
+    const std::string text = kind == FileKind::Urdf ? take_in_urdf(request.body, name, has) : request.body;
+    folder_.write(name, text);
+    return as_answer({{"name", name}, {"facts", facts_of(kind, text, (folder_.path() / name).string())}});
   }
   if (request.method != "DELETE") return refusal(405, "GET, PUT or DELETE");
-  if (kind != FileKind::Scenario && kind != FileKind::Items)
+  if (kind != FileKind::Scenario && kind != FileKind::Items && kind != FileKind::Urdf && kind != FileKind::Mesh)
     return refusal(422, "files of a run are removed with it: DELETE /api/1/runs/NAME");
   folder_.remove(name);
   return as_answer({{"removed", name}});
@@ -306,6 +329,23 @@ ApiAnswer Service::answer_move(const std::string& name, const std::string& body)
   return as_answer({{"text", model::move_parts(scenario, edits)}});
 }
 
+/// The text with another cup or arm; whether it can be used is another question.
+ApiAnswer Service::answer_edit(const std::string& what, const std::string& name, const std::string& body) const {
+  const Json json = parse_object(body, kLargestMove);
+  for (const auto& [key, value] : json.items())
+    if (key != "text" && key != what && (what != "arm" || key != "tool"))
+      throw InputError("request", printable(key, 40), "", what == "arm" ? "text, arm or tool" : "text or cup");
+  const std::string text = member(json, "text", std::string()), wanted = member(json, what.c_str(), std::string());
+  if (kind_of_name(name) != FileKind::Scenario) throw InputError("name", "", name, "a name that ends in .yaml");
+  if (what == "cup") return as_answer({{"text", put_cup(text, name, wanted)}});
+  if (kind_of_name(wanted) != FileKind::Urdf) throw InputError("request", "arm", wanted, "a file that ends in .urdf");
+  const ArmFacts facts = read_arm_facts(folder_.read(wanted), wanted);
+  const std::string tool = member(json, "tool", facts.links.front());
+  const std::string path = (folder_.path() / name).string();  // with its folder: other files are looked for beside it
+  return as_answer(
+      {{"text", put_arm(text, path, wanted, tool, folder_.path())}, {"links", facts.links}, {"tool", tool}});
+}
+
 ApiAnswer Service::answer_run(const ApiRequest& request, const std::string& name, const std::string& part) {
   const bool is_get = request.method == "GET";
   if (part.empty() && is_get) return as_answer(as_json(runs_.status(name)));
@@ -320,6 +360,29 @@ ApiAnswer Service::answer_run(const ApiRequest& request, const std::string& name
       return refusal(409, "this run is none of this program: it is over, or another program started it");
     return as_answer({{"stopping", name}});
   }
+  if (part == "stop-now" && request.method == "POST") {
+    if (!runs_.stop_now(name))
+      return refusal(409, "this run is none of this program: it is over, or another program started it");
+    return as_answer({{"stopped", name}});
+  }
+  if (part == "operator" && request.method == "POST") {
+    const Json json = parse_object(request.body);
+    const std::string order = member(json, "order", std::string());
+    runs_.operate(name, order);
+    return as_answer({{"said", order}, {"command", "echo " + as_shell_line({order}) + " >> " + name + ".operator"}});
+  }
+  if (part == "decisions" && is_get) {
+    (void)runs_.status(name);
+    ApiAnswer answer;
+    answer.body = format_decisions(folder_.has(name + ".jsonl") ? folder_.read(name + ".jsonl") : "", name + ".jsonl");
+    return answer;
+  }
+  if (part == "make" && request.method == "POST") {
+    const Json json = parse_object(request.body);
+    const std::string what = member(json, "what", std::string());
+    runs_.make(name, what);
+    return as_answer({{"made", what}, {"command", as_shell_line(make_command(name, what))}});
+  }
   if (part == "report" && is_get) {
     runs_.make_report(name);
     ApiAnswer answer;
@@ -333,12 +396,13 @@ ApiAnswer Service::answer_run(const ApiRequest& request, const std::string& name
 
 ApiAnswer Service::start_runs(const std::string& body, bool starts) {
   const Json json = parse_object(body);
-  static constexpr std::array kKeys = {"name",   "scenario",   "items", "sequence",
-                                       "plants", "plant_seed", "tempo", "resumes"};
+  static constexpr std::array kKeys = {"name",  "scenario", "items", "sequence", "plants",     "plant_seed",
+                                       "tempo", "resumes",  "plant", "observe",  "perception", "moves_a_robot"};
   for (const auto& [key, value] : json.items()) {
     if (std::ranges::find(kKeys, std::string_view(key)) == kKeys.end())
       throw InputError("request", printable(key, 40), "",
-                       "name, scenario, items, sequence, plants, plant_seed, tempo or resumes");
+                       "name, scenario, items, sequence, plants, plant_seed, tempo, resumes, plant, observe, "
+                       "perception or moves_a_robot");
   }
   RunRequest request;
   request.name = member(json, "name", std::string());
@@ -346,11 +410,20 @@ ApiAnswer Service::start_runs(const std::string& body, bool starts) {
   request.items = member(json, "items", std::string());
   request.sequence = member(json, "sequence", std::string());
   request.resumes = member(json, "resumes", std::string());
+  request.plant = member(json, "plant", std::string());
+  request.observe = member(json, "observe", std::string());
+  request.perception = member(json, "perception", std::string());
+  if (json.contains("moves_a_robot") && !json["moves_a_robot"].is_null()) {
+    if (!json["moves_a_robot"].is_boolean()) throw InputError("request", "moves_a_robot", "", "true or false");
+    request.moves_a_robot = json["moves_a_robot"].get<bool>();
+  }
   request.plant_seed = member(json, "plant_seed", std::uint64_t{0});
   if (json.contains("tempo") && !json["tempo"].is_null()) request.tempo = member(json, "tempo", 1.0);
   const auto plants = member(json, "plants", std::uint64_t{1});
   if (plants < 1 || plants > static_cast<std::uint64_t>(kMostPlants))
     throw InputError("request", "plants", std::to_string(plants), "1 to " + std::to_string(kMostPlants));
+  if (!request.plant.empty() && plants != 1)
+    throw InputError("request", "plants", std::to_string(plants), "1, with a plant of its own");
   if (!request.resumes.empty() && plants != 1)
     throw InputError("request", "plants", std::to_string(plants), "1, with resumes");
   if (request.plant_seed > UINT64_MAX - plants) throw InputError("request", "plant_seed", "", "a smaller number");

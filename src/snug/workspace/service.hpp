@@ -45,6 +45,8 @@ class Service {
   [[nodiscard]] serve::ApiAnswer answer_scene(const std::string& name, const std::string& text) const;
   [[nodiscard]] serve::ApiAnswer answer_reach(const std::string& name, const std::string& text) const;
   [[nodiscard]] serve::ApiAnswer answer_move(const std::string& name, const std::string& body) const;
+  [[nodiscard]] serve::ApiAnswer answer_edit(const std::string& what, const std::string& name,
+                                             const std::string& body) const;
   [[nodiscard]] serve::ApiAnswer answer_run(const serve::ApiRequest& request, const std::string& name,
                                             const std::string& part);
   [[nodiscard]] serve::ApiAnswer start_runs(const std::string& body, bool starts);

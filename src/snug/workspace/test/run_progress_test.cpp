@@ -111,6 +111,42 @@ TEST(LogReader, PassesOverWhatSaysNothingOfTheProgress) {
   EXPECT_EQ(reader.offset(), text.size());
 }
 
+// Files of others: items that there are not, ends of what was not begun.
+TEST(LogReader, RefusesEventsThatCannotBe) {
+  namespace event = session::event;
+  const test::ScratchFolder scratch;
+  const Folder folder(scratch.path());
+  const std::string start = session::format_event(small_log().events[0]) + "\n";
+  const model::ItemIndex stranger(7);
+  const std::vector<session::SessionEvent> hostile = {event::ItemStarted{0.0, stranger, {}},
+                                                      event::ItemStarted{0.0, model::ItemIndex(-5), {}},
+                                                      event::ItemEnded{},
+                                                      event::ItemLost{stranger, session::ItemEnd::Gone, ""},
+                                                      event::Operated{0.0, stranger, 1, "x hold", true, ""},
+                                                      small_log().events[0]};
+  for (std::size_t i = 0; i < hostile.size(); ++i) {
+    std::ofstream(scratch / "a.jsonl") << start << session::format_event(hostile[i]) << "\n";
+    LogReader reader;
+    EXPECT_THROW(reader.read(folder, "a.jsonl"), InputError) << i;
+    std::ofstream(scratch / "a.jsonl") << session::format_event(event::ItemStarted{}) << "\n";
+    EXPECT_THROW(LogReader().read(folder, "a.jsonl"), InputError) << "without a start";
+  }
+}
+
+TEST(LogReader, SaysWhichItemIsUnderWayAndHeld) {
+  namespace event = session::event;
+  session::EventLog log;
+  const model::ItemIndex item(1);
+  log.events = {small_log().events[0], event::ItemStarted{0.0, item, {}},
+                event::Operated{1.0, item, 1, "B hold", true, ""}};
+  EXPECT_EQ(progress_of(log).now, "B");
+  EXPECT_EQ(progress_of(log).held, "B");
+  log.events.emplace_back(event::Operated{1.0, item, 2, "B go", true, ""});
+  EXPECT_EQ(progress_of(log).held, "");
+  log.events.emplace_back(event::ItemEnded{2.0, item, session::ItemEnd::Placed, ""});
+  EXPECT_EQ(progress_of(log).now, "");
+}
+
 // Read piece by piece, as it grows, it is the same as read at once.
 TEST(LogReader, IsTheSameInPiecesAndBeginsAgainWithAShorterFile) {
   const test::ScratchFolder scratch;

@@ -80,13 +80,13 @@ TEST_F(RunsTest, StartTheCommandThatIsShownInTheFolder) {
   ASSERT_TRUE(reaches(runs, "a", RunState::Done));
   const RunStatus status = runs.status("a");
   EXPECT_EQ(status.command,
-            "snug pack cell.yaml --sequence 'it'\\''s $(mine)' --plant-seed 0 --tempo 0.85 --log a.jsonl --live a.live "
-            "--program a.program.csv -o a.h5");
+            "snug pack cell.yaml --sequence 'it'\\''s $(mine)' --plant-seed 0 --tempo 0.85 --log a.jsonl "
+            "--operator a.operator --program a.program.csv --live a.live -o a.h5");
   const std::string said = read_file(cells_ / "a.txt", "what it printed");
   EXPECT_NE(said.find("in " + fs::canonical(cells_).string() + "\n<pack>\n<cell.yaml>\n<--sequence>\n<it's $(mine)>\n"),
             std::string::npos)
       << said;
-  EXPECT_EQ(status.files, (std::vector<std::string>{"a.jsonl", "a.txt"}));
+  EXPECT_EQ(status.files, (std::vector<std::string>{"a.jsonl", "a.operator", "a.txt"}));
   EXPECT_THROW(runs.start(one), InputError);  // the name is taken
   runs.remove("a");
   EXPECT_THROW((void)runs.status("a"), InputError);
@@ -119,6 +119,59 @@ TEST_F(RunsTest, EndAtOnceWhenToldTwice) {
   EXPECT_TRUE(runs.stop("a"));
   EXPECT_TRUE(runs.stop("a"));
   EXPECT_TRUE(reaches(runs, "a", RunState::Ended));
+}
+
+TEST_F(RunsTest, EndAtOnceWithoutBeingAskedFirst) {
+  Runs runs(*folder_, program_, 1);
+  runs.start(request("a", "waits"));
+  ASSERT_TRUE(reaches(runs, "a", RunState::Running));
+  EXPECT_TRUE(runs.stop_now("a"));
+  EXPECT_TRUE(reaches(runs, "a", RunState::Ended));
+  EXPECT_FALSE(runs.stop_now("a"));
+}
+
+TEST_F(RunsTest, TakeWhatWhoOperatesSays) {
+  Runs runs(*folder_, program_, 1);
+  runs.start(request("a", "waits"));
+  ASSERT_TRUE(reaches(runs, "a", RunState::Running));
+  runs.operate("a", "next   hold");
+  runs.operate("a", "\"a \\\"b\" take-out B");
+  for (const char* wrong : {"", "# nothing", "next jump", "next go\nnext skip", "next"})
+    EXPECT_THROW(runs.operate("a", wrong), InputError) << wrong;
+  EXPECT_EQ(read_file(cells_ / "a.operator", "what was said"), "next hold\n\"a \\\"b\" take-out B\n");
+  EXPECT_THROW(runs.operate("none", "next hold"), InputError);
+  EXPECT_THROW(runs.operate("../a", "next hold"), InputError);
+  fs::remove(cells_ / "a.operator");
+  fs::create_symlink(program_, cells_ / "a.operator");
+  EXPECT_THROW(runs.operate("a", "next hold"), InputError) << "not written through a link";
+  EXPECT_TRUE(runs.stop("a"));
+  EXPECT_TRUE(reaches(runs, "a", RunState::Done));
+  EXPECT_THROW(runs.operate("a", "next hold"), InputError) << "it is over";
+}
+
+TEST_F(RunsTest, PackCellsThatOthersServe) {
+  RunRequest one = request("a", "first");
+  one.plant = "click://127.0.0.1:5555";
+  one.perception = "camera";
+  EXPECT_EQ(as_shell_line(command_of(one)),
+            "snug pack cell.yaml --sequence first --plant 'click://127.0.0.1:5555' --perception camera --log a.jsonl "
+            "--operator a.operator --program a.program.csv");
+  check(one);
+  one.plant = "ur://10.0.0.2";
+  one.observe = "tcp://127.0.0.1:5555";
+  one.moves_a_robot = true;
+  check(one);
+  EXPECT_NE(as_shell_line(command_of(one)).find("--yes-this-moves-a-robot"), std::string::npos);
+  for (const char* wrong : {"--help", "http://x", "click:/x", "ur://a b", "ur://\n"}) {
+    one.plant = wrong;
+    EXPECT_THROW(check(one), InputError) << wrong;
+  }
+  one = request("a", "first");
+  one.moves_a_robot = true;
+  EXPECT_THROW(check(one), InputError) << "a simulated one";
+  EXPECT_EQ(make_command("a", "film")[1], "picture");
+  EXPECT_THROW((void)make_command("a", "--help"), InputError);
+  EXPECT_THROW((void)make_command("../a", "film"), InputError);
 }
 
 TEST_F(RunsTest, TellWhatGoesOnElsewhereFromWhatWasKilled) {

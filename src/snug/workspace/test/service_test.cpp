@@ -82,8 +82,8 @@ TEST_F(ServiceTest, ShowsCommandsAndStartsThemOncePerPlant) {
   EXPECT_TRUE(json("GET", "folder")["runs"].empty());
   EXPECT_EQ(json("POST", "runs", request, 201), shown);
   EXPECT_EQ(shown["runs"][1]["command"],
-            "snug pack a.yaml --sequence first --plant-seed 8 --threads 1 --log r-2.jsonl --live r-2.live --program "
-            "r-2.program.csv -o "
+            "snug pack a.yaml --sequence first --plant-seed 8 --threads 1 --log r-2.jsonl --operator r-2.operator "
+            "--program r-2.program.csv --live r-2.live -o "
             "r-2.h5");
   EXPECT_EQ(json("GET", "runs/r-2")["command"], shown["runs"][1]["command"]);
   const serve::ApiAnswer events = ask("GET", "runs/r-1/events");
@@ -191,9 +191,11 @@ TEST_F(ServiceTest, RefusesDeepRequests) {
 TEST_F(ServiceTest, AnswersRandomRequestsWithoutLeavingTheFolder) {
   (void)json("PUT", "files/a.yaml", cell_);
   Rng rng(11);
-  const std::vector<std::string> words = {
-      "files",  "runs", "check",  "facts",  "templates", "folder", "commands", "a.yaml", "a",  "..",   ".",          "",
-      "%2e%2e", "stop", "events", "report", "scene",     "move",   "reach",    "live",   "\n", "\xff", "secret.yaml"};
+  const std::vector<std::string> words = {"files",    "runs",      "check",    "facts",     "templates", "folder",
+                                          "commands", "a.yaml",    "a",        "..",        ".",         "",
+                                          "%2e%2e",   "stop",      "events",   "report",    "scene",     "move",
+                                          "reach",    "live",      "operator", "decisions", "make",      "arm",
+                                          "cup",      "catalogue", "stop-now", "\n",        "\xff",      "secret.yaml"};
   const std::vector<std::string> methods = {"GET", "POST", "PUT", "DELETE", "PATCH", ""};
   const auto any = [&](const std::vector<std::string>& of) {
     return of[static_cast<std::size_t>(rng.index(static_cast<int>(of.size())))];
