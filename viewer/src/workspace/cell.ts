@@ -4,6 +4,7 @@
 import { api, type CellMove, type CellPart, type Checked, type Facts } from "./api";
 import { action, field, later, make, numberInput, setChoices, textInput } from "./dom";
 import { namesIn, type Place } from "./placing";
+import { makeParts } from "./parts";
 import { makeReach } from "./reach";
 import type { Shell } from "./shell";
 import { decodeBase64, decodeReplay } from "../replay/decode";
@@ -42,6 +43,17 @@ export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void 
   let moves = new Map<string, CellMove>();
   let writtenHere = ""; // text that moves made
   let isOther = true; // than the cell that is drawn
+
+  const tradeParts = makeParts(shell, {
+    name: () => fileName(),
+    text: () => text.value,
+    facts: () => facts,
+    set: async (changed) => {
+      isOther = true;
+      text.value = changed;
+      await check();
+    },
+  });
 
   const fileName = (): string => `${name.value.trim()}.yaml`;
   const target = (): number => (facts?.containers ?? []).findIndex((one) => one.name === facts!.target);
@@ -87,7 +99,10 @@ export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void 
     goTo.hidden = !mistake?.line;
     goTo.textContent = `Show line ${mistake?.line ?? ""}`;
     goTo.onclick = () => goToLine(mistake!.line!);
-    if (checked.facts) facts = checked.facts;
+    if (checked.facts) {
+      facts = checked.facts;
+      tradeParts.showFacts();
+    }
     stage?.markWrong(mistake ? namesIn(mistake.text) : []);
     if (mistake) return;
     showForm();
@@ -229,14 +244,21 @@ export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void 
           field("Part", part), field("x in mm", numbers[0]!), field("y in mm", numbers[1]!), field("z in mm", numbers[2]!), field("Turn in degrees", turn), field("Snap to", snap)),
         make("fieldset", "numbers edits", make("legend", "", "Main numbers"),
           field("Container length in mm", sizes[0]!), field("Container width in mm", sizes[1]!), field("Container height in mm", sizes[2]!),
-          field("Cup radius in mm", radius), make("p", "", "The tempo is chosen with the run. Everything else is in the text."))),
+          field("Cup radius in mm", radius), make("p", "", "The tempo is chosen with the run. Everything else is in the text.")),
+        tradeParts.element),
       make("div", "cell-right", reach.element, field("Text of the cell (YAML)", text, "wide"))));
+  element.addEventListener("dragover", (event) => event.preventDefault());
+  element.addEventListener("drop", (event) => {
+    event.preventDefault();
+    void tradeParts.take([...(event.dataTransfer?.files ?? [])]);
+  });
   // For tests and scripts that point at parts.
   (window as unknown as { snugCell: object }).snugCell = { pointOf: (key: string) => stage?.pointOf(key) ?? null, reachLayer: () => reach.layer() };
   return {
     element,
     refresh: () => {
       setChoices(template, shell.folder.templates.map((one): [string, string] => [one.name, `${one.name}: ${one.description}`]));
+      tradeParts.refresh();
       setChoices(saved, [["", "–"], ...shell.folder.scenarios.map((one): [string, string] => [one.name, one.name])]);
     },
   };

@@ -1,8 +1,9 @@
 // Items: orders of boxes from a CSV: chosen, dropped or typed; mistakes marked where they are; boxes drawn to scale.
 
 import { api, Refused, type Checked, type ItemLine } from "./api";
-import { action, field, later, make, plainName, scrollable, setChoices, textInput } from "./dom";
+import { action, field, later, make, numberInput, plainName, scrollable, setChoices, textInput } from "./dom";
 import type { Shell } from "./shell";
+import { drawSpreads, typicalOrders } from "./typical";
 
 const EXAMPLE = `order,article,length_mm,width_mm,height_mm,mass_kg,count
 mine,coffee,200,150,100,0.5,1
@@ -54,6 +55,8 @@ export function makeItems(shell: Shell): { element: HTMLElement; refresh(): void
   verdict.setAttribute("role", "status");
   const rows = scrollable(make("div", "scroll"));
   const boxes = make("div", "boxes");
+  const spreads = make("div", "spreads");
+  const orders = numberInput(3, 1, 100, 1), perOrder = numberInput(20, 1, 200, 1), drawn = numberInput(1, 0, 1e9, 1);
 
   const fileName = (): string => `${name.value.trim()}.csv`;
 
@@ -75,6 +78,7 @@ export function makeItems(shell: Shell): { element: HTMLElement; refresh(): void
   }
 
   function showBoxes(lines: ItemLine[]): void {
+    spreads.replaceChildren(...drawSpreads(lines));
     const largest = Math.max(1, ...lines.map((line) => Math.max(...line.size_mm)));
     boxes.replaceChildren(...lines.slice(0, MOST_DRAWN).map((line) =>
       make("figure", "", drawBox(line, 70 / largest), make("figcaption", "", `${line.count} × ${line.article}`, make("small", "", `${line.size_mm.join(" × ")} mm, ${line.mass_kg} kg`))),
@@ -87,6 +91,7 @@ export function makeItems(shell: Shell): { element: HTMLElement; refresh(): void
       verdict.className = "verdict";
       rows.replaceChildren();
       boxes.replaceChildren();
+      spreads.replaceChildren();
       return;
     }
     try {
@@ -146,8 +151,16 @@ export function makeItems(shell: Shell): { element: HTMLElement; refresh(): void
         text.value = EXAMPLE;
         return check();
       })),
+    make("fieldset", "numbers", make("legend", "", "Typical orders"),
+      field("Orders", orders), field("Boxes of an order", perOrder), field("Seed", drawn),
+      action("Draw orders", () => {
+        if (![orders, perOrder, drawn].every((input) => input.checkValidity() && input.value !== "")) return shell.tell("1 to 100 orders of 1 to 200 boxes.", true);
+        name.value = `typical-${drawn.value}`;
+        text.value = typicalOrders({ orders: orders.valueAsNumber, boxes: perOrder.valueAsNumber, seed: drawn.valueAsNumber });
+        return check();
+      })),
     make("div", "bar", field("Name of the items", name), action("Save items", save, "main")),
-    verdict, rows, boxes, field("Text of the items", text, "wide"));
+    verdict, rows, spreads, boxes, field("Text of the items", text, "wide"));
   element.addEventListener("dragover", (event) => event.preventDefault());
   element.addEventListener("drop", (event) => {
     event.preventDefault();

@@ -3,9 +3,12 @@
 import { api, isGoingOn, type RunRequest, type RunStatus } from "./api";
 import { action, field, later, make, numberInput, scrollable, setChoices, table, textInput } from "./dom";
 import type { Shell } from "./shell";
+import { DecisionView } from "./decisions";
 import { Watch } from "./watch";
 
 const MOST_SHOWN = 300; // runs in the list
+const MOST_PREVIEWED = 5; // orders whose commands are shown
+const ALL = "\u0000"; // all orders: no order has this name
 
 /** In a few words: how far, or how it ended. */
 export function describe(run: RunStatus): string {
@@ -25,15 +28,30 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
   const tempo = make("select");
   setChoices(tempo, [["", "1 (full speed)"], ["0.9", "0.9"], ["0.8", "0.8"], ["0.7", "0.7"], ["0.6", "0.6"], ["0.5", "0.5"]]);
   const name = textInput("run-1");
+  // A cell that another program serves, or a robot.
+  const where = make("select");
+  setChoices(where, [["", "simulated here"], ["click", "served: CLICK"], ["ur", "robot: UR"]]);
+  const address = textInput("click://127.0.0.1:5555");
+  const observe = textInput();
+  observe.placeholder = "tcp://127.0.0.1:5555";
+  const perception = make("select");
+  setChoices(perception, [["", "exact"], ["noisy", "noisy"], ["camera", "camera"], ["dead-reckoning", "dead reckoning"]]);
+  const moves = make("input");
+  moves.type = "checkbox";
+  let orders: string[] = []; // that can be chosen
+  const isServed = (): boolean => where.value !== "";
   const command = scrollable(make("pre", "command"));
   const said = make("div");
   said.setAttribute("role", "status");
   let shown = ""; // the run that is told of
   // It stays where it is while all around it changes: who wants to stop a run has to hit it.
+  const decisions = new DecisionView(shell);
+  const stopNow = action("Stop at once", async () => void (await shell.attempt(() => api.stopNow(shown))), "danger");
+  stopNow.title = "The program ends now, whatever it does; a robot that it moves stands within 0.2 s";
   const stop = action("Stop", async () => void (await shell.attempt(() => api.stop(shown))));
   const elsewhere = make("span", "", "Another program started this run: it can be stopped there.");
   const shownCommand = scrollable(make("pre", "command"));
-  const live = make("div", "live", said, make("div", "bar", stop, elsewhere), shownCommand);
+  const live = make("div", "live", said, make("div", "bar", stop, stopNow, elsewhere), decisions.operator, shownCommand);
   live.hidden = true;
   const list = scrollable(make("div", "scroll"));
   const scene = new Watch();
@@ -42,8 +60,16 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
 
   const request = (): RunRequest => ({
     name: name.value.trim(), scenario: scenario.value, items: items.value, sequence: sequence.value,
-    plants: plants.valueAsNumber, plant_seed: seed.valueAsNumber, tempo: tempo.value ? Number(tempo.value) : null, resumes: "",
+    plants: isServed() ? 1 : plants.valueAsNumber, plant_seed: seed.valueAsNumber, tempo: tempo.value ? Number(tempo.value) : null, resumes: "",
+    ...(isServed() ? { plant: address.value.trim(), observe: observe.value.trim(), perception: perception.value, moves_a_robot: moves.checked } : {}),
   });
+
+  /** One for each order that is chosen. */
+  function requests(): RunRequest[] {
+    const one = request();
+    if (sequence.value !== ALL) return [one];
+    return orders.map((order, k) => ({ ...one, sequence: order, name: `${one.name}-${k + 1}` }));
+  }
 
   function freeName(): string {
     const taken = (stem: string): boolean => shell.folder.runs.some((run) => run.name === stem || run.name.startsWith(`${stem}-`));
@@ -55,8 +81,10 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
   async function preview(): Promise<void> {
     if (!scenario.value) return void (command.textContent = "Save a cell first.");
     try {
-      const found = await api.commands(request());
-      command.textContent = found.runs.map((run) => run.command).join("\n");
+      const lines: string[] = [];
+      for (const one of requests().slice(0, MOST_PREVIEWED)) lines.push(...(await api.commands(one)).runs.map((run) => run.command));
+      const more = requests().length - MOST_PREVIEWED;
+      command.textContent = lines.join("\n") + (more > 0 ? `\n# and so on, ${more} more orders` : "");
     } catch (error) {
       command.textContent = shell.say(error);
     }
@@ -65,7 +93,8 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
   async function loadSequences(): Promise<void> {
     const from = items.value || scenario.value;
     const checked = from ? await shell.attempt(() => api.facts(from)) : undefined;
-    setChoices(sequence, (checked?.facts?.sequences ?? []).map((one): [string, string] => [one, one]));
+    orders = checked?.facts?.sequences ?? [];
+    setChoices(sequence, [...orders.map((one): [string, string] => [one, one]), ...(orders.length > 1 ? [[ALL, `all ${orders.length} orders`] as [string, string]] : [])]);
     await preview();
   }
 
@@ -81,8 +110,10 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
     shown = run.name;
     live.hidden = false;
     stop.hidden = !isGoingOn(run) || !run.can_be_stopped;
+    stopNow.hidden = stop.hidden || run.state === "waiting";
     elsewhere.hidden = !isGoingOn(run) || run.can_be_stopped;
     shownCommand.textContent = run.command;
+    void decisions.follow(run);
     said.replaceChildren(make("h2", "", `${run.name}: ${run.state}`), make("p", "", describe(run)), bar, boxes);
   }
 
@@ -99,12 +130,17 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
     });
   }
 
-  async function start(wanted: RunRequest): Promise<void> {
-    const started = await shell.attempt(() => api.start(wanted));
-    if (!started) return;
-    shell.tell(`${started.runs.map((run) => run.name).slice(0, 3).join(", ")} started.`);
+  async function start(wanted: RunRequest[]): Promise<void> {
+    const names: string[] = [];
+    for (const one of wanted) {
+      const started = await shell.attempt(() => api.start(one));
+      if (!started) break;
+      names.push(...started.runs.map((run) => run.name));
+    }
+    if (names.length === 0) return;
+    shell.tell(`${names.slice(0, 3).join(", ")}${names.length > 3 ? ` and ${names.length - 3} more` : ""} started.`);
     isNameTyped = false;
-    watch(started.runs[0]!.name);
+    watch(names[0]!);
     await shell.refresh();
   }
 
@@ -112,8 +148,9 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
   async function resume(run: RunStatus): Promise<void> {
     const word = (option: string): string => new RegExp(`${option} (?:'([^']*)'|(\\S+))`).exec(run.command)?.slice(1).find(Boolean) ?? "";
     const of = /^snug pack (\S+)/.exec(run.command)?.[1] ?? "";
-    await start({ name: `${run.name}-resumed`, scenario: of, items: word("--items"), sequence: word("--sequence"), plants: 1,
-      plant_seed: Number(word("--plant-seed")), tempo: word("--tempo") ? Number(word("--tempo")) : null, resumes: run.name });
+    await start([{ name: `${run.name}-resumed`, scenario: of, items: word("--items"), sequence: word("--sequence"), plants: 1,
+      plant_seed: Number(word("--plant-seed")), plant: word("--plant"), observe: word("--observe"), perception: word("--perception"),
+      moves_a_robot: run.command.includes(" --yes-this-moves-a-robot "), tempo: word("--tempo") ? Number(word("--tempo")) : null, resumes: run.name }]);
   }
 
   function showList(): void {
@@ -140,13 +177,29 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
   for (const input of [plants, seed, name]) input.addEventListener("input", changed);
   for (const select of [sequence, tempo]) select.addEventListener("change", changed);
   name.addEventListener("input", () => (isNameTyped = true));
+  const ofPlants = [field("Plants", plants), field("First plant seed", seed)];
+  const ofServed = [field("Address", address), field("Perception", perception)];
+  const ofRobot = [field("Where boxes are told", observe), make("label", "check", moves, "A robot elsewhere moves")];
+  function showPlant(): void {
+    for (const one of ofPlants) one.hidden = isServed();
+    for (const one of ofServed) one.hidden = !isServed();
+    for (const one of ofRobot) one.hidden = where.value !== "ur";
+    if (where.value !== "ur") [observe.value, moves.checked] = ["", false];
+    const scheme = where.value === "ur" ? "ur://" : "click://";
+    if (isServed() && !address.value.startsWith(where.value)) address.value = `${scheme}127.0.0.1${where.value === "ur" ? "" : ":5555"}`;
+    void preview();
+  }
+  where.addEventListener("change", showPlant);
+  for (const input of [address, observe, perception, moves]) input.addEventListener("input", changed);
+
+  showPlant();
 
   let known = "";
   const element = make("section", "page",
     make("div", "bar", field("Cell", scenario), field("Items", items), field("Order", sequence)),
-    make("div", "bar", field("Plants", plants), field("First plant seed", seed), field("Tempo", tempo), field("Name of the run", name),
-      action("Start", () => start(request()), "main")),
-    make("p", "hint", "What Start does, as a command in the folder:"), command, make("div", "going", live, scene.element), make("h2", "", "Runs of the folder"), list);
+    make("div", "bar", field("What is packed", where), ...ofPlants, ...ofServed, ...ofRobot, field("Tempo", tempo), field("Name of the run", name),
+      action("Start", () => start(requests()), "main")),
+    make("p", "hint", "What Start does, as a command in the folder:"), command, make("div", "going", live, scene.element), decisions.element, make("h2", "", "Runs of the folder"), list);
   return {
     element,
     refresh: () => {

@@ -1,19 +1,32 @@
 // Take away: what a run left, to open or to store, and the commands that make more of it.
 
 import { api, isGoingOn } from "./api";
-import { field, link, make, scrollable, setChoices } from "./dom";
+import { action, field, link, make, scrollable, setChoices } from "./dom";
 import type { Shell } from "./shell";
 
 const FILES: [ending: string, text: string][] = [
   [".h5", "Recording (HDF5)"],
   [".program.csv", "Program (waypoints, CSV)"],
   [".jsonl", "Log of events (JSON lines)"],
+  [".operator", "What the operator said"],
   [".txt", "Command and what it printed"],
+  [".png", "Picture of its end (PNG)"],
+  [".glb", "The load in 3D (GLB)"],
 ];
 
 export function makeTakeAway(shell: Shell): { element: HTMLElement; refresh(): void } {
   const which = make("select");
   const place = make("div");
+  const said = make("p", "hint");
+  said.setAttribute("role", "status");
+
+  async function makeOf(what: string, words: string): Promise<void> {
+    const run = which.value;
+    said.textContent = `${words} is being made …`;
+    const done = await shell.attempt(() => api.make(run, what));
+    said.textContent = done ? `${words} of ${run} is in the folder${what === "film" ? `, frames in ${run}-film` : ""}. As a command: ${done.command}` : "";
+    await shell.refresh();
+  }
 
   function show(): void {
     const run = shell.folder.runs.find((one) => one.name === which.value);
@@ -31,15 +44,26 @@ export function makeTakeAway(shell: Shell): { element: HTMLElement; refresh(): v
     const program = `${run.name}.program.csv --scenario ${scenario}${more}`;
     const commands = [
       `snug report ${run.name}.h5 -o ${run.name}.html`,
+      `snug picture ${run.name}.h5 -o ${run.name}.png`,
+      `snug picture ${run.name}.h5 --video ${run.name}-film --fps 10 --speed 4`,
+      `snug export ${run.name}.h5 --format glb -o ${run.name}.glb`,
       `snug export ${run.name}.h5 --format mcap -o ${run.name}.mcap`,
       `snug export ${program} --format urscript -o ${run.name}.script`,
       `snug export ${program} --format ros-trajectory -o ${run.name}.ros.yaml`,
     ];
-    place.replaceChildren(links, make("h2", "", "Commands in the folder"), scrollable(make("pre", "command", commands.join("\n"))),
+    const makes = make("div", "bar");
+    if (has(".h5") && !isGoingOn(run)) {
+      makes.append(action("Make a picture", () => makeOf("picture", "The picture")), action("Make a film (frames)", () => makeOf("film", "The film")),
+        action("Make a GLB", () => makeOf("glb", "The GLB")), said);
+    }
+    place.replaceChildren(links, makes, make("h2", "", "Commands in the folder"), scrollable(make("pre", "command", commands.join("\n"))),
       make("p", "hint", "URScript and ROS trajectories need a cell with a robot."));
   }
 
-  which.addEventListener("change", show);
+  which.addEventListener("change", () => {
+    said.textContent = "";
+    show();
+  });
   const element = make("section", "page", make("div", "bar", field("Run", which)), place);
   return {
     element,

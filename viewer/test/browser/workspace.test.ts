@@ -100,13 +100,21 @@ describe("the page of snug ui", () => {
     await picture(page, "workspace-run");
     expect(actions).toBeLessThanOrEqual(25);
     expect(readFileSync(join(folder, "run-1.txt"), "utf8").split("\n")[0]).toBe(
-      "$ snug pack cell.yaml --items my-orders-1-.csv --sequence mine --plant-seed 1 --log run-1.jsonl --live run-1.live --program run-1.program.csv -o run-1.h5");
+      "$ snug pack cell.yaml --items my-orders-1-.csv --sequence mine --plant-seed 1 --log run-1.jsonl --operator run-1.operator --program run-1.program.csv --live run-1.live -o run-1.h5");
     expect(readFileSync(join(folder, "cell.yaml"), "utf8")).toContain("# What is packed into: a tote"); // comments stay
+
+    await shows("Candidates (");
+    expect(await page.locator(".plan svg").count()).toBe(2);
 
     await click("tab", "Compare");
     await shows("Boxes an hour");
     const [csv] = await Promise.all([page.waitForEvent("download"), click("button", "Download CSV")]);
     expect(readFileSync((await csv.path())!, "utf8")).toMatch(/^,run-1\r\nState,done\r\n/);
+    await page.getByLabel("An hour of the cell").fill("3600");
+    await shows("Cost of a packed box");
+    await page.waitForFunction(() => /^\d+\.\d{3}$/.test([...document.querySelectorAll("table.compare")].find((one) => one.textContent!.includes("Cost of a packed box"))!.querySelector("tr:last-child td:last-child")!.textContent!));
+    const [book] = await Promise.all([page.waitForEvent("download"), click("button", "Download workbook (.xlsx)")]);
+    expect(readFileSync((await book.path())!).subarray(0, 4).toString("latin1")).toBe("PK\x03\x04");
     await click("tab", "Take away");
     // Asked without drawing it, which takes seconds without a graphics card: scripts, but no address of its own.
     const path = await page.getByRole("link", { name: "Open the report" }).getAttribute("href");

@@ -2,7 +2,7 @@
 // watched in 3D; and what an accessibility checker finds on every view.
 
 import type { ChildProcess } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import type { Browser, Page } from "playwright-core";
@@ -10,7 +10,25 @@ import { afterAll, afterEach, beforeAll, describe, expect, it } from "vitest";
 import { openBrowser } from "../support/browser";
 import { repository, serveWith, snug } from "../support/program";
 
-const ORDERS = "order,article,length_mm,width_mm,height_mm,mass_kg\nmine,A,180,120,90,0.4\nmine,B,150,120,90,0.3\n";
+const ORDERS = "order,article,length_mm,width_mm,height_mm,mass_kg,count\nmine,A,180,120,90,0.4,1\nmine,B,150,120,90,0.3,1\nlong,C,100,80,60,0.2,60\n";
+/** Three slides and a turn; one mesh, named by a path that must not be read. */
+const SLIDE = '<limit lower="-1.5" upper="1.5" effort="3000" velocity="2"/>';
+const MASS = '<inertial><mass value="8"/><inertia ixx="0.3" iyy="0.3" izz="0.3"/></inertial>';
+const joint = (name: string, kind: string, parent: string, child: string, axis: string, limit: string): string =>
+  `<joint name="${name}" type="${kind}"><parent link="${parent}"/><child link="${child}"/><axis xyz="${axis}"/>${limit}</joint>`;
+const GANTRY = `<robot name="gantry"><link name="frame"/><link name="bridge">${MASS}</link><link name="carriage">${MASS}</link>
+<link name="mast">${MASS}<collision><geometry><mesh filename="file:///etc/mast.stl" scale="0.01 0.01 0.01"/></geometry></collision></link><link name="flange">${MASS}</link>
+${joint("x", "prismatic", "frame", "bridge", "1 0 0", SLIDE)}${joint("y", "prismatic", "bridge", "carriage", "0 1 0", SLIDE)}
+${joint("z", "prismatic", "carriage", "mast", "0 0 1", SLIDE)}${joint("yaw", "revolute", "mast", "flange", "0 0 1", '<limit lower="-6.28" upper="6.28" effort="300" velocity="4"/>')}
+<link name="tool0"/><joint name="turned" type="fixed"><parent link="flange"/><child link="tool0"/><origin rpy="3.141592653589793 0 0"/></joint></robot>`;
+const MAST = `solid mast
+${[[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]].map((corners) => `facet normal 0 0 0
+outer loop
+${corners.map((k) => `vertex ${["0 0 0", "1 0 0", "0 1 0", "0 0 1"][k]}`).join("\n")}
+endloop
+endfacet`).join("\n")}
+endsolid mast
+`;
 const PATIENCE = 180_000; // ms, for drawing without a graphics card while others work
 const axe = readFileSync(join(repository, "viewer/node_modules/axe-core/axe.min.js"), "utf8");
 
@@ -20,7 +38,8 @@ let child: ChildProcess | null = null;
 let address = "";
 const errors: string[] = [];
 
-async function openPage(width = 1280, height = 720): Promise<Page> {
+/** Small: pixels are what drawing without a graphics card costs. */
+async function openPage(width = 960, height = 600): Promise<Page> {
   const context = await browser.newContext({ viewport: { width, height } });
   const page = await context.newPage();
   page.on("pageerror", (error) => errors.push(error.message));
@@ -123,7 +142,7 @@ describe("the cell of snug ui", () => {
     await page.getByLabel("Snap to").selectOption("50");
     await page.locator(".stage canvas").focus();
     await page.keyboard.press("ArrowRight");
-    await page.waitForFunction((old) => Number((document.querySelectorAll("fieldset.numbers input")[0] as HTMLInputElement).value) > old, before);
+    await page.waitForFunction((old) => Number((document.querySelectorAll(".cell-left fieldset.numbers input")[0] as HTMLInputElement).value) > old, before);
     expect(Number(await page.getByLabel("x in mm").inputValue()) % 50).toBe(0);
     await page.keyboard.press("PageDown"); // into the bench
     await page.getByText(/overlaps/).waitFor();
@@ -167,19 +186,55 @@ describe("the cell of snug ui", () => {
   }, PATIENCE);
 });
 
+describe("parts of the trade", () => {
+  it("are a container and a cup by their names, and an arm that is dropped with its meshes", async () => {
+    const page = await openPage();
+    await begin(page, "cell");
+    await page.getByLabel("Container of the catalogue").selectOption({ label: "Euro container 400 x 300 x 220" });
+    await textHas(page, "inner_size: [0.36, 0.26, 0.205]");
+    const cup = await page.getByLabel("Cup of the catalogue").locator("option", { hasText: "40 mm, 1.5 folds, foam lip" }).getAttribute("value");
+    await page.getByLabel("Cup of the catalogue").selectOption(cup!);
+    await textHas(page, "# snug cup estimate --diameter 40 --bellows 1.5 --lip foam");
+    const file = (name: string, text: string): { name: string; mimeType: string; buffer: Buffer } => ({ name, mimeType: "text/plain", buffer: Buffer.from(text) });
+    const files = page.getByLabel("Choose a URDF and its meshes");
+    await files.setInputFiles([file("<img src=x onerror=alert(1)>.urdf", GANTRY)]);
+    await page.getByText(/files that are not in the folder: mast\.stl/).waitFor();
+    await files.setInputFiles([file("gantry.urdf", GANTRY), file("mast.stl", MAST)]);
+    await page.getByText("gantry.urdf is the arm of this cell; tool0 carries the tool.").waitFor();
+    await page.getByText(/reached: \d+ of \d+/).first().waitFor();
+    expect(await text(page)).toContain("  urdf: gantry.urdf\n");
+    expect(readdirSync(folder).filter((name) => /urdf|stl/.test(name))).toEqual(["gantry.urdf", "mast.stl"]);
+    expect(readFileSync(join(folder, "gantry.urdf"), "utf8")).not.toContain("/etc/");
+    await picture(page, "workspace-parts");
+    expect(errors.filter((text) => !/422/.test(text))).toEqual([]);
+    await page.context().close();
+  }, PATIENCE);
+});
+
 describe("a run of snug ui", () => {
   it("is watched in 3D while it goes on, and stops when told", async () => {
     const page = await openPage();
     await page.getByRole("tab", { name: "Run" }).click();
     await page.getByRole("combobox", { name: "Cell", exact: true }).selectOption("by-page.yaml");
-    await page.getByText(/snug pack by-page.yaml --sequence first .*--live run-1.live/).waitFor();
+    await page.getByRole("combobox", { name: "Items", exact: true }).selectOption("mine.csv");
+    await page.getByLabel("Order", { exact: true }).selectOption("long"); // long enough to be stepped into
+    await page.getByText(/snug pack by-page.yaml --items mine.csv --sequence long .*--live run-1.live/).waitFor();
     await page.getByRole("button", { name: "Start", exact: true }).click();
     await page.locator(".watch .stage canvas").waitFor();
     await page.waitForFunction(() => (window as unknown as { snugWatch: Watched }).snugWatch.shown() > 0.5);
     const first = await watched(page);
     expect(first.frames).toBeGreaterThan(10);
     expect(first.shown).toBeLessThanOrEqual(first.end);
-    await page.locator(".live").getByRole("button", { name: "Stop" }).click();
+    await page.getByRole("button", { name: "Hold the next box" }).click();
+    await page.getByText(/is planned and waits for what you say/).waitFor();
+    await page.getByRole("button", { name: "Choose" }).first().waitFor();
+    await picture(page, "workspace-held");
+    await page.getByRole("button", { name: "Another place" }).click();
+    await page.getByText(/the operator: \S+ elsewhere/).waitFor();
+    await page.getByRole("button", { name: "Skip this box" }).click();
+    await page.getByText(/skipped: by the operator/).waitFor();
+    expect(readFileSync(join(folder, "run-1.operator"), "utf8")).toMatch(/^next hold\n\S+ elsewhere\n\S+ skip\n$/);
+    await page.locator(".live").getByRole("button", { name: "Stop", exact: true }).click();
     await picture(page, "workspace-live");
     expect(await serious(page)).toEqual([]); // with the drawing
     await page.getByText(/interrupted/).first().waitFor();
@@ -198,7 +253,7 @@ describe("a run of snug ui", () => {
         await page.getByRole("tab", { name: tab }).click();
         if (tab === "Items") await page.getByRole("button", { name: "Use the example" }).click();
         if (tab === "Run") await page.getByRole("button", { name: "Show" }).first().click();
-        if (tab === "Compare") await page.getByText("Boxes an hour").waitFor();
+        if (tab === "Compare") await page.getByText("Boxes an hour").first().waitFor();
         expect(await serious(page), `${tab} at ${width}`).toEqual([]);
         expect(await page.evaluate(() => document.documentElement.scrollWidth), tab).toBeLessThanOrEqual(width);
         await picture(page, `workspace-${tab}-${width}`);
