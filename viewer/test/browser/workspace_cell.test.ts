@@ -134,7 +134,7 @@ describe("the cell of snug ui", () => {
     await page.waitForFunction(() => !(document.querySelector("textarea.tall") as HTMLTextAreaElement).value.includes("position: [0.45, 0.0, 0.02]"));
     const found = /name: tote, pose: \{position: \[(-?[\d.]+), (-?[\d.]+), 0\.02\]/.exec(await text(page))!;
     expect(found).not.toBeNull();
-    for (const number of found.slice(1, 3)) expect(Math.abs((Number(number) * 100) % 1)).toBeLessThan(1e-6); // of 10 mm
+    for (const number of found.slice(1, 3)) expect(Math.abs(Number(number) * 100 - Math.round(Number(number) * 100))).toBeLessThan(1e-6); // of 10 mm
     expect(await text(page)).toContain("# What is packed into: a tote");
     expect(await page.getByRole("combobox", { name: "Part", exact: true }).inputValue()).toBe("containers.tote");
 
@@ -217,7 +217,7 @@ describe("a run of snug ui", () => {
     await page.getByRole("tab", { name: "Run" }).click();
     await page.getByRole("combobox", { name: "Cell", exact: true }).selectOption("by-page.yaml");
     await page.getByRole("combobox", { name: "Items", exact: true }).selectOption("mine.csv");
-    await page.getByLabel("Order", { exact: true }).selectOption("long"); // long enough to be stepped into
+    await page.getByRole("combobox", { name: "Order", exact: true }).selectOption("long"); // long enough to be stepped into
     await page.getByText(/snug pack by-page.yaml --items mine.csv --sequence long .*--live run-1.live/).waitFor();
     await page.getByRole("button", { name: "Start", exact: true }).click();
     await page.locator(".watch .stage canvas").waitFor();

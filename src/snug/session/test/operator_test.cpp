@@ -150,11 +150,11 @@ TEST(Operator, ChoosesACandidateOfTheDecision) {
   ASSERT_FALSE(item.sends.empty());
   EXPECT_NE(item.planned, alone.result.items[0].planned);
   EXPECT_EQ(item.operator_steps.size(), 1U);
-  // The place that is said is the candidate's; where boxes are pressed together the planned one is some mm from it.
+  // The place that is said is the candidate's: the one that is planned may be pressed in by some mm, or the other end
+  // up. Of candidates at one place the first has the most utility.
   const auto chosen = std::ranges::find_if(tried, [&](const planning::Tried& one) {
     const Vector3 p = 1e3 * one.planned.X_TP.p;
-    return one.planned.orientation == item.planned.orientation &&
-           item.operator_steps[0].text == fmt::format("({:.0f}, {:.0f}, {:.0f}) mm is planned", p.x(), p.y(), p.z());
+    return item.operator_steps[0].text == fmt::format("({:.0f}, {:.0f}, {:.0f}) mm is planned", p.x(), p.y(), p.z());
   });
   ASSERT_NE(chosen, tried.end()) << item.operator_steps[0].text;
   const auto number = chosen - tried.begin() + 1;
