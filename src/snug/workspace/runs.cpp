@@ -222,7 +222,8 @@ void Runs::start(const RunRequest& request) {
       throw InputError("run", "name", request.name, "a name that is free: there is a file " + request.name + ending);
   }
   Job job{command_of(request), folder_.create(request.name + ".txt")};
-  (void)folder_.create(request.name + ".operator");    // empty: nobody has said anything
+  const Descriptor said = folder_.create(request.name + ".operator");
+  if (request.holds) print_to(said.get(), "next hold\n");
   (void)::flock(job.output.get(), LOCK_EX | LOCK_NB);  // nobody else knows of it yet
   print_to(job.output.get(), "$ " + as_shell_line(job.words) + "\n");
   jobs_.emplace(request.name, std::move(job));

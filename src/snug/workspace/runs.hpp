@@ -34,6 +34,7 @@ struct RunRequest {
   std::string observe;          ///< of a robot: where boxes are told; empty: nowhere
   bool moves_a_robot = false;   ///< one that is not on this machine
   std::string perception;       ///< of `plant`; empty: exact
+  bool holds = false;           ///< who operates is waited for at the first box
   std::string resumes;          ///< name of a run that was killed; empty: none
   int threads = 0;              ///< 0: all cores
 };

@@ -396,13 +396,14 @@ ApiAnswer Service::answer_run(const ApiRequest& request, const std::string& name
 
 ApiAnswer Service::start_runs(const std::string& body, bool starts) {
   const Json json = parse_object(body);
-  static constexpr std::array kKeys = {"name",  "scenario", "items", "sequence", "plants",     "plant_seed",
-                                       "tempo", "resumes",  "plant", "observe",  "perception", "moves_a_robot"};
+  static constexpr std::array kKeys = {"name",       "scenario",      "items",   "sequence", "plants",
+                                       "plant_seed", "tempo",         "resumes", "plant",    "observe",
+                                       "perception", "moves_a_robot", "holds"};
   for (const auto& [key, value] : json.items()) {
     if (std::ranges::find(kKeys, std::string_view(key)) == kKeys.end())
       throw InputError("request", printable(key, 40), "",
                        "name, scenario, items, sequence, plants, plant_seed, tempo, resumes, plant, observe, "
-                       "perception or moves_a_robot");
+                       "perception, moves_a_robot or holds");
   }
   RunRequest request;
   request.name = member(json, "name", std::string());
@@ -413,12 +414,14 @@ ApiAnswer Service::start_runs(const std::string& body, bool starts) {
   request.plant = member(json, "plant", std::string());
   request.observe = member(json, "observe", std::string());
   request.perception = member(json, "perception", std::string());
-  if (json.contains("moves_a_robot") && !json["moves_a_robot"].is_null()) {
-    if (!json["moves_a_robot"].is_boolean()) throw InputError("request", "moves_a_robot", "", "true or false");
-    request.moves_a_robot = json["moves_a_robot"].get<bool>();
-  }
-  request.plant_seed = member(json, "plant_seed", std::uint64_t{0});
-  if (json.contains("tempo") && !json["tempo"].is_null()) request.tempo = member(json, "tempo", 1.0);
+  const auto is_set = [&](const char* key) {
+    const auto found = json.find(key);
+    if (found == json.end() || found->is_null()) return false;
+    if (!found->is_boolean()) throw InputError("request", key, "", "true or false");
+    return found->get<bool>();
+  };
+  request.moves_a_robot = is_set("moves_a_robot");
+  request.holds = is_set("holds");
   const auto plants = member(json, "plants", std::uint64_t{1});
   if (plants < 1 || plants > static_cast<std::uint64_t>(kMostPlants))
     throw InputError("request", "plants", std::to_string(plants), "1 to " + std::to_string(kMostPlants));

@@ -120,6 +120,7 @@ export interface RunRequest {
   observe?: string;
   perception?: string;
   moves_a_robot?: boolean;
+  holds?: boolean; // the operator is waited for at the first box
 }
 
 export interface Catalogue {

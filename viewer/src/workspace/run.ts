@@ -39,6 +39,8 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
   const moves = make("input");
   moves.type = "checkbox";
   let orders: string[] = []; // that can be chosen
+  const holds = make("input");
+  holds.type = "checkbox";
   const isServed = (): boolean => where.value !== "";
   const command = scrollable(make("pre", "command"));
   const said = make("div");
@@ -60,7 +62,7 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
 
   const request = (): RunRequest => ({
     name: name.value.trim(), scenario: scenario.value, items: items.value, sequence: sequence.value,
-    plants: isServed() ? 1 : plants.valueAsNumber, plant_seed: seed.valueAsNumber, tempo: tempo.value ? Number(tempo.value) : null, resumes: "",
+    plants: isServed() ? 1 : plants.valueAsNumber, plant_seed: seed.valueAsNumber, tempo: tempo.value ? Number(tempo.value) : null, resumes: "", holds: holds.checked,
     ...(isServed() ? { plant: address.value.trim(), observe: observe.value.trim(), perception: perception.value, moves_a_robot: moves.checked } : {}),
   });
 
@@ -197,7 +199,7 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
   let known = "";
   const element = make("section", "page",
     make("div", "bar", field("Cell", scenario), field("Items", items), field("Order", sequence)),
-    make("div", "bar", field("What is packed", where), ...ofPlants, ...ofServed, ...ofRobot, field("Tempo", tempo), field("Name of the run", name),
+    make("div", "bar", field("What is packed", where), ...ofPlants, ...ofServed, ...ofRobot, field("Tempo", tempo), field("Name of the run", name), make("label", "check", holds, "Hold the first box"),
       action("Start", () => start(requests()), "main")),
     make("p", "hint", "What Start does, as a command in the folder:"), command, make("div", "going", live, scene.element), decisions.element, make("h2", "", "Runs of the folder"), list);
   return {

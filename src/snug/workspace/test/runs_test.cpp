@@ -134,6 +134,10 @@ TEST_F(RunsTest, TakeWhatWhoOperatesSays) {
   Runs runs(*folder_, program_, 1);
   runs.start(request("a", "waits"));
   ASSERT_TRUE(reaches(runs, "a", RunState::Running));
+  RunRequest held = request("h", "mine");
+  held.holds = true;
+  runs.start(held);
+  EXPECT_EQ(read_file(cells_ / "h.operator", "what is said at first"), "next hold\n");
   runs.operate("a", "next   hold");
   runs.operate("a", "\"a \\\"b\" take-out B");
   for (const char* wrong : {"", "# nothing", "next jump", "next go\nnext skip", "next"})
