@@ -414,6 +414,8 @@ ApiAnswer Service::start_runs(const std::string& body, bool starts) {
   request.plant = member(json, "plant", std::string());
   request.observe = member(json, "observe", std::string());
   request.perception = member(json, "perception", std::string());
+  request.plant_seed = member(json, "plant_seed", std::uint64_t{0});
+  if (json.contains("tempo") && !json["tempo"].is_null()) request.tempo = member(json, "tempo", 1.0);
   const auto is_set = [&](const char* key) {
     const auto found = json.find(key);
     if (found == json.end() || found->is_null()) return false;

@@ -29,6 +29,8 @@ export function outcomeRows(one: Decision): string[][] {
   ];
 }
 
+const BETWEEN_LOOKS = 700; // ms, at decisions of a run that is held
+
 export class DecisionView {
   readonly element = make("section", "decisions");
   private readonly which_ = make("select");
@@ -43,6 +45,7 @@ export class DecisionView {
   private sizeOf_ = "";
   private isFollowing_ = true; // the last decision is shown
   private known_ = "";
+  private timer_ = 0;
 
   constructor(private readonly shell_: Shell) {
     const step = (by: number) => (): void => {
@@ -80,6 +83,14 @@ export class DecisionView {
     }
     await this.loadSize(run);
     this.element.hidden = this.shown_.decisions.length === 0;
+    // What is said to a run that is held changes its decisions, not its progress.
+    window.clearTimeout(this.timer_);
+    if (isGoingOn(run) && run.held) {
+      this.timer_ = window.setTimeout(() => {
+        this.known_ = "";
+        void this.follow(this.run_!);
+      }, BETWEEN_LOOKS);
+    }
     const before = this.which_.selectedIndex;
     const last = this.shown_.decisions.length - 1;
     setChoices(this.which_, this.shown_.decisions.map((one, k): [string, string] => [String(k), `${k + 1}: ${one.item}, ${one.end || one.outcome}`]));

@@ -80,21 +80,27 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
     return `run-${k}`;
   }
 
+  let asked = 0, previewed = 0;
+
   async function preview(): Promise<void> {
+    const mine = ++previewed;
     if (!scenario.value) return void (command.textContent = "Save a cell first.");
     try {
       const lines: string[] = [];
       for (const one of requests().slice(0, MOST_PREVIEWED)) lines.push(...(await api.commands(one)).runs.map((run) => run.command));
+      if (mine !== previewed) return;
       const more = requests().length - MOST_PREVIEWED;
       command.textContent = lines.join("\n") + (more > 0 ? `\n# and so on, ${more} more orders` : "");
     } catch (error) {
-      command.textContent = shell.say(error);
+      if (mine === previewed) command.textContent = shell.say(error);
     }
   }
 
   async function loadSequences(): Promise<void> {
     const from = items.value || scenario.value;
+    const mine = ++asked; // an answer that comes late is of what was chosen before
     const checked = from ? await shell.attempt(() => api.facts(from)) : undefined;
+    if (mine !== asked) return;
     orders = checked?.facts?.sequences ?? [];
     setChoices(sequence, [...orders.map((one): [string, string] => [one, one]), ...(orders.length > 1 ? [[ALL, `all ${orders.length} orders`] as [string, string]] : [])]);
     await preview();
