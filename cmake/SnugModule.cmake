@@ -16,6 +16,9 @@ endif()
 # Same input, same bytes: no fused multiply-add unless written, and no reordering of sums. File names in messages start at
 # the project's folder, so that a program tells nothing of the machine that built it.
 set(SNUG_CODEGEN -ffp-contract=off -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
+  list(APPEND SNUG_CODEGEN -I${PROJECT_SOURCE_DIR}/cmake/aarch64)
+endif()
 # An error in memory becomes an end of the program: canaries, stacks that are touched page by page, marked targets of jumps, checked
 # copies, and tables of functions that nobody can write once the program runs (docs/dependencies.md says what is loaded).
 # Libraries are found where the system has them: CMake would add the folder of each and an empty entry, which is the

@@ -85,7 +85,8 @@ model::Scenario drawn_drop(const RandomDrop& drop) {
     text += fmt::format("- {{name: o{}, material: m, mass: {}, pose: {{position: [{}, {}, {}], ", i, mass, x, y,
                         0.25 + kLayer * (i / 4));
     text += "rpy_deg: " + drawn_vector(rng, -180.0, 180.0) + "}, ";
-    text += "twist: {linear: " + drawn_vector(rng, -1.0, 1.0) + ", angular: " + drawn_vector(rng, -6.0, 6.0) + "}, ";
+    const std::string linear = drawn_vector(rng, -1.0, 1.0);  // one after the other, whichever the compiler makes first
+    text += "twist: {linear: " + linear + ", angular: " + drawn_vector(rng, -6.0, 6.0) + "}, ";
     text += drawn_shape(rng) + "}\n";
   }
   return model::parse_scenario(text, fmt::format("random drop, seed {}", drop.seed));
