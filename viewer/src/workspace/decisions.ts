@@ -29,6 +29,7 @@ export function outcomeRows(one: Decision): string[][] {
   ];
 }
 
+const TRIED = ["best", "less utility", "too rarely", "failed"]; // verdicts of what was rehearsed
 const BETWEEN_LOOKS = 700; // ms, at decisions of a run that is held
 
 export class DecisionView {
@@ -149,7 +150,7 @@ export class DecisionView {
     const run = this.run_!;
     const isHeld = isGoingOn(run) && run.held === one.item;
     const rows = one.candidates.map((candidate, k) => [
-      String(k + 1), at(candidate.position_mm), candidate.insertion, number(candidate.expected_percent, 1), number(candidate.cost, 1), number(candidate.utility, 1),
+      String(k + 1), at(candidate.position_mm), TRIED.includes(candidate.verdict) ? candidate.insertion : "–", number(candidate.expected_percent, 1), number(candidate.cost, 1), number(candidate.utility, 1),
       candidate.samples > 0 ? `${(100 * candidate.success_rate).toFixed(0)} %` : "–",
       make("span", "", candidate.verdict + (candidate.reason ? `: ${candidate.reason}` : "")),
       ...(isHeld ? [action("Choose", () => this.say(`${quoted(one.item)} place ${k + 1}`))] : []),
@@ -157,7 +158,9 @@ export class DecisionView {
     const head = ["No.", "Place in mm", "Insertion", "Expected %", "Cost %", "Utility %", "Samples", "Verdict", ...(isHeld ? ["Choice"] : [])];
     const words: Node[] = [];
     for (const trouble of one.troubles) words.push(make("p", "bad", `At ${trouble.time.toFixed(1)} s ${trouble.trouble}: ${trouble.remedy}${trouble.detail ? ` (${trouble.detail})` : ""}`));
-    for (const said of one.operator) words.push(make("p", "", `At ${said.time.toFixed(1)} s the operator: ${said.order}${said.was_followed ? "" : ", not followed"}${said.text ? `: ${said.text}` : ""}`));
+    // What was said of the box before it was planned anew, too: that is why it was.
+    const before = this.shown_!.decisions.slice(0, this.which_.selectedIndex + 1).filter(({ item }) => item === one.item);
+    for (const said of before.flatMap(({ operator }) => operator)) words.push(make("p", "", `At ${said.time.toFixed(1)} s the operator: ${said.order}${said.was_followed ? "" : ", not followed"}${said.text ? `: ${said.text}` : ""}`));
     const more = one.candidates_in_all - one.candidates.length;
     this.place_.replaceChildren(
       make("p", "", make("b", "", one.item), ` at ${one.time.toFixed(1)} s: ${one.outcome}${one.reason ? `: ${one.reason}` : ""}; planned in ${one.planning_seconds.toFixed(1)} s.${one.end_reason ? ` ${one.end}: ${one.end_reason}.` : ""}`),

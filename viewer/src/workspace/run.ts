@@ -121,6 +121,7 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
     stopNow.hidden = stop.hidden || run.state === "waiting";
     elsewhere.hidden = !isGoingOn(run) || run.can_be_stopped;
     shownCommand.textContent = run.command;
+    shownCommand.hidden = run.command === "";
     void decisions.follow(run);
     said.replaceChildren(make("h2", "", `${run.name}: ${run.state}`), make("p", "", describe(run)), bar, boxes);
   }
