@@ -101,9 +101,10 @@ void compare_poses_clean(const SimulatedRun& run, const Measurement& measurement
 struct Columns {
   std::vector<double> times;
   std::array<std::vector<double>, 6> values;  ///< position, rotation vector
+  std::vector<bool> is_held;                  ///< the same as before to the last bit: not measured anew
 };
 
-/// The demonstrator's cleaning, which sees the window alone: constant runs and outliers are taken away, gaps filled,
+/// The demonstrator's cleaning, which sees the window alone: outliers and constant runs are taken away, gaps filled,
 /// everything smoothed.
 Columns cleaned_as_reported(const Measurement& measurement, std::size_t body, const Window& window) {
   const auto [first, last] = span_of(measurement.pose_times, window.start, window.end);
@@ -113,13 +114,12 @@ Columns cleaned_as_reported(const Measurement& measurement, std::size_t body, co
   for (std::size_t i = first; i < last; ++i) {
     columns.times.push_back(measurement.pose_times[i]);
     const PoseSample& X_WB = measurement.bodies[body][i];
-    const bool is_held = is_tracked(X_WB) && X_WB == before;  // the same to the last bit: not measured anew
+    columns.is_held.push_back(is_tracked(X_WB) && X_WB == before);
     before = X_WB;
     if (is_tracked(X_WB)) w = nearest_log(X_WB.pose().R, w);
     for (int k = 0; k < 3; ++k) {
-      const bool is_known = is_tracked(X_WB) && !is_held;
-      columns.values[static_cast<std::size_t>(k)].push_back(is_known ? X_WB.p[k] : kNaN);
-      columns.values[static_cast<std::size_t>(3 + k)].push_back(is_known ? w[k] : kNaN);
+      columns.values[static_cast<std::size_t>(k)].push_back(is_tracked(X_WB) ? X_WB.p[k] : kNaN);
+      columns.values[static_cast<std::size_t>(3 + k)].push_back(is_tracked(X_WB) ? w[k] : kNaN);
     }
   }
   for (std::size_t k = 0; k < 6; ++k) {
@@ -127,7 +127,7 @@ Columns cleaned_as_reported(const Measurement& measurement, std::size_t body, co
     const std::vector<bool> is_outlier =
         internal::find_outliers(columns.times, values, k < 3 ? kPositionMedian : kRotationMedian);
     for (std::size_t i = 0; i < values.size(); ++i)
-      if (is_outlier[i]) values[i] = kNaN;
+      if (is_outlier[i] || columns.is_held[i]) values[i] = kNaN;
     internal::fill_gaps(columns.times, values);
     values = internal::smooth(values);
   }
@@ -197,7 +197,7 @@ void compare_wrenches(const WrenchSeries& series, Errors& errors) {
 }
 
 /// The measurement nearest to each of the simulation's instants; then what those are smoothed to, less the simulation.
-/// The filter's 51 samples are of the simulation's, so 0.4 s at its 125 Hz.
+/// The filter's 50 samples are of the simulation's, so 0.4 s at its 125 Hz.
 WrenchSeries wrench_series_as_reported(const SimulatedRun& run, const Measurement& measurement, const Window& window) {
   const auto [first, last] = span_of(run.times, window.start, window.end);
   const std::size_t from = first > kFilterReach ? first - kFilterReach : 0;

@@ -4,17 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
-
-#include "snug/validation/internal/averages.hpp"
 
 namespace snug::validation::internal {
 namespace {
 
 constexpr double kScaledMad = 1.4826;  // standard deviations in a median absolute deviation of normal noise
 constexpr double kOutlier = 3.0;       // the default of MATLAB's filloutliers; the analysis names no other
-constexpr double kHops = 30.0;         // medians in a window
-constexpr std::ptrdiff_t kHalfWindow = 25;
+constexpr std::ptrdiff_t kBefore = 25, kAfter = 24;  // samples of a window of 50, as MATLAB centres an even one
 
 /// Slope at the middle of three samples: weighted harmonic mean of the two secants, 0 at an extremum.
 double pchip_slope(double h0, double h1, double d0, double d1) {
@@ -23,27 +19,79 @@ double pchip_slope(double h0, double h1, double d0, double d1) {
   return (w0 + w1) / (w0 / d0 + w1 / d1);
 }
 
+/// The known values of a moving window, in order.
+class SortedWindow {
+ public:
+  void add(double value) { values_.insert(std::ranges::upper_bound(values_, value), value); }
+  void take_away(double value) { values_.erase(std::ranges::lower_bound(values_, value)); }
+  [[nodiscard]] double median() const {
+    const std::size_t n = values_.size();
+    return n % 2 == 1 ? values_[n / 2] : 0.5 * (values_[n / 2 - 1] + values_[n / 2]);
+  }
+  /// Median of the absolute deviations from `middle`, the median.
+  [[nodiscard]] double deviation_from(double middle) const {
+    const std::size_t n = values_.size();
+    const double upper = deviation(middle, n / 2);
+    return n % 2 == 1 ? upper : 0.5 * (deviation(middle, n / 2 - 1) + upper);
+  }
+
+ private:
+  /// The deviation that has `rank` smaller ones. Deviations grow from the middle to both sides: of the smallest
+  /// rank + 1, so many stand below it as a bisection says.
+  [[nodiscard]] double deviation(double middle, std::size_t rank) const {
+    const auto split = static_cast<std::size_t>(std::ranges::lower_bound(values_, middle) - values_.begin());
+    const std::size_t n = values_.size(), wanted = rank + 1;
+    const auto below = [&](std::size_t k) { return middle - values_[split - 1 - k]; };
+    const auto above = [&](std::size_t k) { return values_[split + k] - middle; };
+    std::size_t low = wanted > n - split ? wanted - (n - split) : 0, high = std::min(wanted, split);
+    while (low < high) {  // the fewest below whose next one is no smaller than the last above
+      const std::size_t k = (low + high) / 2;
+      if (below(k) < above(wanted - k - 1))
+        low = k + 1;
+      else
+        high = k;
+    }
+    const std::size_t others = wanted - low;
+    return std::max(low > 0 ? below(low - 1) : 0.0, others > 0 ? above(others - 1) : 0.0);
+  }
+
+  std::vector<double> values_;
+};
+
+/// The value at 0 of the parabola of least squares through the known samples from -before to after around `middle`.
+double parabola_at(const std::vector<double>& values, std::ptrdiff_t middle, std::ptrdiff_t before,
+                   std::ptrdiff_t after) {
+  // Normal equations in x / reach, solved by Cramer's rule.
+  const double reach = static_cast<double>(kBefore);
+  double s[5] = {}, b[3] = {};
+  for (std::ptrdiff_t k = -before; k <= after; ++k) {
+    const double y = values[static_cast<std::size_t>(middle + k)], x = static_cast<double>(k) / reach;
+    if (!std::isfinite(y)) continue;
+    double power = 1.0;
+    for (int j = 0; j < 5; ++j, power *= x) {
+      s[j] += power;
+      if (j < 3) b[j] += power * y;
+    }
+  }
+  if (s[0] < 3.0) return values[static_cast<std::size_t>(middle)];
+  const double c0 = s[2] * s[4] - s[3] * s[3], c1 = s[2] * s[3] - s[1] * s[4], c2 = s[1] * s[3] - s[2] * s[2];
+  return (c0 * b[0] + c1 * b[1] + c2 * b[2]) / (c0 * s[0] + c1 * s[1] + c2 * s[2]);
+}
+
 }  // namespace
 
 std::vector<bool> find_outliers(const std::vector<double>& times, const std::vector<double>& values, double window) {
   std::vector<bool> is_outlier(values.size(), false);
-  std::vector<double> near;
+  SortedWindow near;
   std::size_t begin = 0, end = 0;
-  double next_hop = -std::numeric_limits<double>::infinity(), middle = 0.0, limit = 0.0;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (times[i] >= next_hop) {
-      next_hop = times[i] + window / kHops;
-      while (begin < i && times[begin] < times[i] - 0.5 * window) ++begin;
-      while (end < values.size() && times[end] <= times[i] + 0.5 * window) ++end;
-      near.clear();
-      for (std::size_t k = begin; k < end; ++k)
-        if (std::isfinite(values[k])) near.push_back(values[k]);
-      if (near.empty()) continue;
-      middle = median(near);
-      for (double& value : near) value = std::abs(value - middle);
-      limit = kOutlier * kScaledMad * median(near);
-    }
-    is_outlier[i] = std::isfinite(values[i]) && std::abs(values[i] - middle) > limit;
+    for (; end < values.size() && times[end] <= times[i] + 0.5 * window; ++end)
+      if (std::isfinite(values[end])) near.add(values[end]);
+    for (; times[begin] < times[i] - 0.5 * window; ++begin)
+      if (std::isfinite(values[begin])) near.take_away(values[begin]);
+    if (!std::isfinite(values[i])) continue;
+    const double middle = near.median();
+    is_outlier[i] = std::abs(values[i] - middle) > kOutlier * kScaledMad * near.deviation_from(middle);
   }
   return is_outlier;
 }
@@ -73,27 +121,11 @@ void fill_gaps(const std::vector<double>& times, std::vector<double>& values) {
 }
 
 std::vector<double> smooth(const std::vector<double>& values) {
-  std::vector<double> smoothed(values.size());
+  std::vector<double> smoothed(values);
   const auto count = static_cast<std::ptrdiff_t>(values.size());
   for (std::ptrdiff_t i = 0; i < count; ++i) {
-    const auto at = [&](std::ptrdiff_t k) { return values[static_cast<std::size_t>(k)]; };
-    std::ptrdiff_t half = 0;
-    while (half < kHalfWindow && i - half - 1 >= 0 && i + half + 1 < count && std::isfinite(at(i - half - 1)) &&
-           std::isfinite(at(i + half + 1)))
-      ++half;
-    // Weights of the value at the middle of a parabola fitted to 2 m + 1 even samples (Savitzky and Golay 1964).
-    const auto m = static_cast<double>(half);
-    const double norm = (2.0 * m - 1.0) * (2.0 * m + 1.0) * (2.0 * m + 3.0) / 3.0;
-    double sum = 0.0;
-    if (half < 2) {
-      sum = at(i);  // a parabola through three samples is the samples
-    } else {
-      for (std::ptrdiff_t k = -half; k <= half; ++k) {
-        const auto x = static_cast<double>(k);
-        sum += (3.0 * m * m + 3.0 * m - 1.0 - 5.0 * x * x) / norm * at(i + k);
-      }
-    }
-    smoothed[static_cast<std::size_t>(i)] = sum;
+    double& value = smoothed[static_cast<std::size_t>(i)];
+    if (std::isfinite(value)) value = parabola_at(values, i, std::min(i, kBefore), std::min(count - 1 - i, kAfter));
   }
   return smoothed;
 }

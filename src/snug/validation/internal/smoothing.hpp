@@ -6,7 +6,7 @@
 namespace snug::validation::internal {
 
 /// Samples that lie more than three scaled median absolute deviations off the median of the `window` seconds around
-/// them. There are thirty medians in a window; each holds until the next.
+/// each of them.
 [[nodiscard]] std::vector<bool> find_outliers(const std::vector<double>& times, const std::vector<double>& values,
                                               double window);
 
@@ -14,8 +14,8 @@ namespace snug::validation::internal {
 /// at the ends stays so.
 void fill_gaps(const std::vector<double>& times, std::vector<double>& values);
 
-/// Savitzky-Golay filter of second order over 51 samples (the demonstrator's window of 50, made symmetric), fewer where
-/// something is missing or ends.
+/// Savitzky-Golay filter of second order over the demonstrator's 50 samples: the sample, 25 before and 24 after it;
+/// those of them that there are at the ends and beside gaps.
 [[nodiscard]] std::vector<double> smooth(const std::vector<double>& values);
 
 }  // namespace snug::validation::internal
