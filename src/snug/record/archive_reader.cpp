@@ -115,12 +115,17 @@ struct ArchiveReader::Impl {
                        "an archive of measurements; `snug measure` makes one of it");
     for (const std::string& name : entries_of(file.get())) {
       check_links(file.get(), name);
-      if (!exists(file.get(), name + '/' + kSensorGroup))
+      if (exists(file.get(), name + '/' + kSensorGroup)) {
+        names.push_back(name);
+        continue;
+      }
+      if (name.starts_with("Rec_"))
         throw InputError(path.string(), '/' + name, std::string("no group ") + kSensorGroup,
                          "recordings with the groups of docs/formats.md");
-      names.push_back(name);
     }
-    if (names.empty()) throw InputError(path.string(), "/", "no group", "a group for each recording");
+    if (names.empty())
+      throw InputError(path.string(), "/", std::string("no group with ") + kSensorGroup,
+                       "a group for each recording, as in docs/formats.md");
   }
 
   /// Runs `work`; what it finds wrong is thrown, or kept when there is somewhere to keep it.
@@ -379,8 +384,11 @@ struct ArchiveReader::Impl {
         guarded(index, kForceGroup, found, [&] { read_forces(index, group, recording.force_torque); });
       if (has("Mocap")) read_motion_capture(index, group, recording.motion_capture, found);
       if (has("UR10_sensor")) read_robot(index, group, recording.robot, found);
-      if (!has("ft_data") && !has("Mocap") && !has("UR10_sensor"))
-        fail(index, kSensorGroup, "no group that is known", "ft_data, Mocap or UR10_sensor");
+      // A camera's recording, say, is one without anything that is read.
+      if (!exists(group.get(), kSensorGroup) ||
+          entries_of(Handle(H5Gopen2(group.get(), kSensorGroup, H5P_DEFAULT), kSensorGroup).get()).empty())
+        fail(index, kSensorGroup, "no group in it",
+             "ft_data, Mocap, UR10_sensor, or another source, which is passed over");
       if (!exists(group.get(), kObjectGroup)) return;
       const Handle objects = open_part(index, group, kObjectGroup, H5O_TYPE_GROUP);
       for (const std::string& name : entries_of(objects.get()))

@@ -340,6 +340,30 @@ TEST(ArchiveReader, TellsEveryDefectWhenAskedTo) {
   EXPECT_NE(found[2].key.find("OBJECT/Box013/mass"), std::string::npos);
 }
 
+TEST(ArchiveReader, PassesOverCamerasAndOtherSourcesThatAreNotRead) {
+  const ScratchFolder folder;
+  save_archive(folder / "a.h5", {{example()}});
+  const ArchiveRecording whole = load_archive(folder / "a.h5").recordings[0];
+  const hid_t file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  const hid_t parents = H5Pcreate(H5P_LINK_CREATE);
+  H5Pset_create_intermediate_group(parents, 1);
+  const auto add = [&](const std::string& path) { H5Gclose(H5Gcreate2(file, path.c_str(), parents, 0, 0)); };
+  add(std::string(kRec) + "/SENSOR_MEASUREMENT/Zivid001/datalog");
+  add(std::string(kRec) + "/SENSOR_MEASUREMENT/ft_data_3/datalog");
+  add(std::string(kRec) + "/ENVIRONMENT");
+  add("Cameras/Zivid001");
+  add("Rec_20230511T100000Z/SENSOR_MEASUREMENT/Zivid001/datalog");
+  add("Rec_20230511T101000Z/SENSOR_MEASUREMENT");
+  H5Pclose(parents);
+  H5Fclose(file);
+  const ArchiveReader reader(folder / "a.h5");
+  ASSERT_EQ(reader.size(), 3U);
+  EXPECT_EQ(reader.read(0), whole);
+  const ArchiveRecording camera = reader.read(1);
+  EXPECT_TRUE(camera.force_torque.times.empty() && camera.motion_capture.times.empty() && camera.robot.times.empty());
+  EXPECT_THROW((void)reader.read(2), InputError);
+}
+
 TEST(ArchiveWriter, LeavesWhatIsThereWhenItFails) {
   const ScratchFolder folder;
   save_archive(folder / "a.h5", {{example()}});
