@@ -8,6 +8,7 @@ import signal
 import socket
 import struct
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -22,6 +23,10 @@ except ImportError:
     rtde_control = None
 
 ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tools"))
+sys.dont_write_bytecode = True
+import cut_robot  # noqa: E402
+
 SNUG = os.environ.get("SNUG", str(ROOT / "build" / "snug"))
 CELL = ROOT / "scenarios" / "box-demonstrator.yaml"
 DASHBOARD, PRIMARY, SECONDARY, REAL_TIME, RTDE = 29999, 30001, 30002, 30003, 30004
@@ -353,6 +358,11 @@ sequences:
             dashboard.close()
             run = json.loads(served.end())
         self.assertEqual([box["state"] for box in run["boxes"]], ["packed"])
+
+    def test_a_client_that_is_killed_or_cut_off_leaves_a_robot_that_stands(self):
+        said = []
+        cut_robot.cut_robot(SNUG, (CELL, "--items", self.items, "--sequence", "one"), 1, ("killed", "cut"), 7, said.append)
+        self.assertEqual(len(said), 3, said)
 
     def test_what_cannot_be_is_refused_before_anything_moves(self):
         def assert_refused(result, *parts):

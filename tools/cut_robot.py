@@ -1,0 +1,285 @@
+#!/usr/bin/env python3
+"""cut_robot.py: what becomes of a served UR whose client is killed, frozen, or cut off from it, at instants drawn while it packs.
+
+  cut_robot.py N            N of each, in sessions of their own: the robot has to stand within 0.2 s of its own time, its outputs as they were, and no
+                            box is lost
+  cut_robot.py N --how cut  of one kind: killed, frozen, cut
+
+The client reaches the robot through a relay of this program, which stops to forward in both directions where it is cut: nobody is told. Boxes are
+told over a socket of its own (--observe), which is not cut. Exit code 1: something was not as it has to be."""
+import argparse
+import collections
+import json
+import os
+import random
+import select
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+DEMONSTRATOR = ROOT / "scenarios" / "box-demonstrator.yaml"
+PORTS = (29999, 30001, 30004)  # those that `pack` uses
+STANDS_WITHIN = 0.2  # s, of the robot's time
+STILL = 0.005  # rad/s
+HOWS = ("killed", "frozen", "cut")
+PATIENCE = "1.5"  # s, of a client without answers
+
+
+class Found(Exception):
+    """What was not as it has to be."""
+
+
+class Relay:
+    """Hands on what comes at ports of its own, until it is cut: then connections stay, and no byte passes."""
+
+    def __init__(self, to):
+        self.to = to
+        self.passes, self.ends = True, False
+        self.pairs = {}
+        for self.offset in range(to + 10, to + 2000, 10):
+            try:
+                self.listeners = {}
+                for port in PORTS:
+                    self.listeners[self.listen(port + self.offset)] = port
+                break
+            except OSError:
+                for one in self.listeners:
+                    one.close()
+        self.thread = threading.Thread(target=self.run, daemon=True)
+        self.thread.start()
+
+    @staticmethod
+    def listen(port):
+        listener = socket.socket()
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            listener.bind(("127.0.0.1", port))
+        except OSError:
+            listener.close()
+            raise
+        listener.listen()
+        return listener
+
+    def run(self):
+        while not self.ends:
+            sources = [*self.listeners, *self.pairs] if self.passes else []
+            ready = select.select(sources, [], [], 0.02)[0]
+            for one in ready if self.passes else []:
+                if one in self.listeners:
+                    here, _ = one.accept()
+                    there = socket.create_connection(("127.0.0.1", self.listeners[one] + self.to))
+                    for end in (here, there):
+                        end.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+                    self.pairs[here], self.pairs[there] = there, here
+                elif one in self.pairs:
+                    self.hand_on(one)
+        for one in [*self.listeners, *self.pairs]:
+            one.close()
+
+    def hand_on(self, one):
+        other = self.pairs[one]
+        try:
+            data = one.recv(65536)
+            if data:
+                other.sendall(data)
+                return
+        except OSError:
+            pass
+        for end in (one, other):
+            self.pairs.pop(end, None)
+            end.close()
+
+    def cut(self):
+        self.passes = False
+
+    def end(self):
+        self.ends = True
+        self.thread.join()
+
+
+class Watch:
+    """What RTDE says of the robot each period, to somebody who is not cut off."""
+    NAMES = b"timestamp,actual_qd,actual_digital_output_bits,runtime_state"
+
+    def __init__(self, offset):
+        self.socket = socket.create_connection(("127.0.0.1", 30004 + offset))
+        self.samples = collections.deque(maxlen=4000)  # (timestamp, fastest joint, outputs, runtime state)
+        for kind, payload in ((b"V", b"\0\2"), (b"O", struct.pack(">d", 0.0) + self.NAMES), (b"S", b"")):
+            self.socket.sendall(struct.pack(">H", len(payload) + 3) + kind + payload)
+        self.thread = threading.Thread(target=self.run, daemon=True)
+        self.thread.start()
+
+    def run(self):
+        data = b""
+        try:
+            while more := self.socket.recv(65536):
+                data += more
+                while len(data) >= 3 and len(data) >= (size := struct.unpack(">H", data[:2])[0]):
+                    if data[2:3] == b"U":
+                        stamp, *qd, outputs, state = struct.unpack(">7dQI", data[4:size])
+                        self.samples.append((stamp, max(map(abs, qd)), outputs, state))
+                    data = data[size:]
+        except OSError:
+            pass
+
+    def now(self):
+        while not self.samples:
+            time.sleep(0.01)
+        return self.samples[-1]
+
+    def since(self, stamp):
+        return [one for one in list(self.samples) if one[0] > stamp]
+
+    def wait(self, is_so, seconds):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            if is_so(self.now()):
+                return True
+            time.sleep(0.005)
+        return False
+
+    def close(self):
+        self.socket.close()
+
+
+class Cell:
+    """A served UR with a relay before it, and a client that packs it."""
+
+    def __init__(self, snug, words, folder):
+        self.snug, self.words, self.folder = snug, words, folder
+        self.client = None
+        self.boxes = f"ipc://{folder}/boxes"
+        for offset in range(3000 + os.getpid() % 100 * 100, 30000, 100):
+            self.served = subprocess.Popen([snug, "serve", *words, "--plant-seed", "1", "--ur", "127.0.0.1", "--ur-port-offset", str(offset), "--observers",
+                                            self.boxes, "--json"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            if "serving" in (said := self.served.stderr.readline()):
+                break
+            self.served.communicate()
+        else:
+            raise Found(f"no served UR: {said}")
+        self.reader = threading.Thread(target=self.served.stderr.read, daemon=True)
+        self.reader.start()
+        self.relay, self.watch = Relay(offset), Watch(offset)
+
+    def start(self):
+        self.said = open(self.folder / "client", "w+", encoding="utf-8")  # noqa: SIM115
+        self.client = subprocess.Popen([self.snug, "pack", *self.words, "--samples", "0", "--decision-time", "0.02", "--plant", f"ur://127.0.0.1:{self.relay.offset}",
+                                        "--plant-timeout", PATIENCE, "--observe", self.boxes], stdout=self.said, stderr=self.said)
+
+    def has_ended(self):
+        return self.client is not None and self.client.poll() is not None
+
+    def why(self):
+        self.said.seek(0)
+        return self.said.read()[-600:]
+
+    def end(self):
+        """What became of each box."""
+        if self.client:
+            self.client.kill()
+            self.client.wait()
+            self.said.close()
+        self.relay.end()
+        self.watch.close()
+        self.served.send_signal(signal.SIGINT)
+        out = self.served.stdout.read()
+        self.served.wait()
+        self.reader.join()
+        self.served.stdout.close()
+        self.served.stderr.close()
+        return collections.Counter(box["state"] for box in json.loads(out.splitlines()[-1])["boxes"]) if out.strip() else collections.Counter()
+
+
+def strike(cell, how, draw):
+    """One instant. Returns how long the robot went on (s of its time), whether its outputs were on."""
+    if cell.client is None or cell.has_ended():
+        cell.start()
+    if not cell.watch.wait(lambda now: now[1] > 0.05 or cell.has_ended(), 60):
+        raise Found(f"{how}: the robot does not move: {cell.why()}")
+    end = time.monotonic() + draw.uniform(0.0, 5.0)
+    while time.monotonic() < end and not cell.has_ended():
+        time.sleep(0.005)
+    if cell.has_ended():
+        return None
+    if how == "cut":
+        cell.relay.cut()
+    else:
+        cell.client.send_signal(signal.SIGKILL if how == "killed" else signal.SIGSTOP)
+    stamp, _, outputs, _ = cell.watch.now()
+    if not cell.watch.wait(lambda now: now[0] > stamp + 1.0, 30):
+        raise Found(f"{how}: the robot's clock stands")
+    after = cell.watch.since(stamp)
+    moved = [one[0] for one in after if one[1] > STILL]
+    if len({one[2] & 1 for one in after[3:]}) != 1:
+        raise Found(f"{how}: the vacuum was switched")
+    if after[-1][3] == 2:
+        raise Found(f"{how}: the program on the robot still runs")
+    return (moved[-1] - stamp if moved else 0.0), bool(outputs & 1)
+
+
+def cut_robot(snug, words, count, hows=HOWS, seed=1, say=print):
+    """`words`: scenario and sequence. Raises Found."""
+    draw, longest, held, sessions, became = random.Random(seed), collections.Counter(), collections.Counter(), 0, collections.Counter()
+    cell = None
+    with tempfile.TemporaryDirectory() as name:
+        def fresh():
+            nonlocal sessions
+            sessions += 1
+            folder = Path(name) / str(sessions)
+            folder.mkdir()
+            return Cell(snug, [*map(str, words)], folder)
+        try:
+            for how in hows:
+                done = 0
+                while done < count:
+                    cell = cell or fresh()
+                    struck = strike(cell, how, draw)
+                    if struck is None:  # the session came to its end
+                        if cell.client.returncode != 0:
+                            raise Found(f"{how}: the session ended with {cell.client.returncode}: {cell.why()}")
+                        became += cell.end()
+                        cell = None
+                        continue
+                    took, is_on = struck
+                    if took > STANDS_WITHIN:
+                        raise Found(f"{how}: the robot stood after {took:.3f} s")
+                    longest[how] = max(longest[how], took)
+                    held[how] += is_on
+                    done += 1
+                    became += cell.end()
+                    cell = None
+                say(f"{how}: {count} times, with the vacuum on {held[how]} times; the robot stood within {longest[how]:.3f} s, outputs as they were")
+        finally:
+            if cell:
+                became += cell.end()
+    lost = sum(became[state] for state in ("lost", "dropped", "outside"))
+    say(f"{sessions} sessions, boxes: {', '.join(f'{number} {state}' for state, number in sorted(became.items()))}")
+    if lost:
+        raise Found(f"{lost} boxes are lost")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("count", type=int)
+    parser.add_argument("--how", choices=HOWS, action="append")
+    parser.add_argument("--sequence", default="1")
+    parser.add_argument("--snug", default=str(ROOT / "build" / "snug"), help="the program (default: build/snug)")
+    parser.add_argument("--seed", type=int, default=1)
+    words = parser.parse_args()
+    try:
+        cut_robot(words.snug, (DEMONSTRATOR, "--sequence", words.sequence), words.count, words.how or HOWS, words.seed,
+                  lambda line: print(line, flush=True))
+    except Found as found:
+        print(f"FOUND: {found}")
+        sys.exit(1)
+
+
+if __name__ == "__main__":
+    main()
