@@ -48,6 +48,7 @@ std::string follow_script(const served_ur::UrArm& arm, bool zeroes, std::int32_t
   silent = 0.0
   late = 0
   is_late = False
+  has_begun = False
   state = 1
   write_output_integer_register({late}, 0)
   write_output_integer_register({state}, {word} + 1)
@@ -58,6 +59,7 @@ std::string follow_script(const served_ur::UrArm& arm, bool zeroes, std::int32_t
     count = now
     if is_new:
       silent = 0.0
+      has_begun = True
     else:
       silent = silent + period
     end
@@ -69,10 +71,12 @@ std::string follow_script(const served_ur::UrArm& arm, bool zeroes, std::int32_t
       played = now + 2
       is_late = True
     end
-    if mode == 2:
-      state = 2
-    elif silent > {limit}:
+    if silent > {limit}:
       state = 3
+    elif has_begun == False:
+      played = now
+    elif mode == 2:
+      state = 2
     elif played > now and is_new == False:
       late = late + 1
       is_late = True

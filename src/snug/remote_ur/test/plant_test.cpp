@@ -165,6 +165,32 @@ TEST(RemoteUr, CommandsThatComeLateAreBridged) {
   }
 }
 
+/// Registers hold nothing, or what another client left there: far targets, and that it ends.
+TEST(RemoteUr, AProgramThatStartsBeforeItsFirstCommandHoldsStill) {
+  SteppedLink link(scenario(), "1");
+  const served_ur::UrArm arm(served_ur::test::demonstrator_cell());
+  const ur::RobotData& data = link.controller().data();
+  const ur::Values6 before = data.actual_q;
+  for (const std::int32_t number : {7, 8}) {
+    SCOPED_TRACE(number);
+    (void)link.start(follow_script(arm, false, number));
+    for (int i = 0; i < 8; ++i) link.controller().step();
+    EXPECT_EQ(link.controller().program_error(), "");
+    EXPECT_EQ(data.outputs.ints[kFirstRegister], script_word(number, ScriptState::Follows));
+    for (std::size_t j = 0; j < before.size(); ++j) EXPECT_NEAR(data.actual_q[j], before[j], 1e-6);
+    RobotSample sample;
+    RobotCommand command;
+    command.count = 100 * number;
+    command.q = {before, before, before};
+    for (int i = 0; i < 3; ++i, ++command.count) ASSERT_EQ(link.exchange(command, sample), "");
+    EXPECT_EQ(sample.script, script_word(number, ScriptState::Follows));
+    command.mode = RobotCommand::Mode::Ends;
+    for (auto& q : command.q) q[0] += 1.0;
+    ASSERT_EQ(link.exchange(command, sample), "");
+    EXPECT_EQ(sample.script, script_word(number, ScriptState::Ended));
+  }
+}
+
 TEST(RemoteUr, ASilentClientStopsTheRobotWithItsVacuumOn) {
   Cell cell;
   ASSERT_TRUE(plant::bring_and_wait(*cell.plant, first_box()));
