@@ -139,7 +139,7 @@ class ServedPlant(unittest.TestCase):
             assert_refused(self.pack("--plant", address), "--plant", "click://HOST:PORT")
         _, address = self.serve("--sequence", "one", "--plant-seed", 7)
         assert_refused(self.pack("--plant", address), "--plant", "it has no object 'b2'")
-        for words in (("--fault", "drop@1"), ("-o", self.folder / "run.h5"), ("--robot", "none")):
+        for words in (("--fault", "drop@1"), ("--robot", "none")):
             assert_refused(self.pack("--plant", address, *words), words[0])
 
     def test_a_camera_packs_what_it_sees_and_has_to_be_there(self):

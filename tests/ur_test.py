@@ -327,9 +327,13 @@ class PackedUr(unittest.TestCase):
   - {name: brick, size: [0.11, 0.12, 0.1], mass: 0.4}
 parcels:
   - {id: b1, type: brick, material: box}
+  - {id: b2, type: brick, material: box}
+  - {id: b3, type: brick, material: box}
 sequences:
   - name: one
     items: [{parcel: b1, up: Z}]
+  - name: three
+    items: [{parcel: b1, up: Z}, {parcel: b2, up: Z}, {parcel: b3, up: Z}]
 """
 
     def setUp(self):
@@ -339,9 +343,15 @@ sequences:
         self.items = self.folder / "items.yaml"
         self.items.write_text(self.ITEMS, encoding="utf-8")
 
-    def pack(self, address, *words):
-        return subprocess.run([SNUG, "pack", CELL, "--items", self.items, "--sequence", "one", "--samples", "0", "--decision-time", "0.02",
-                               "--plant", address, *map(str, words), "--json"], text=True, capture_output=True, timeout=300)
+    def words(self, address, *more, sequence="one"):
+        return [SNUG, "pack", CELL, "--items", self.items, "--sequence", sequence, "--samples", "0", "--decision-time", "0.02",
+                "--plant", address, *map(str, more), "--json"]
+
+    def pack(self, address, *more, sequence="one"):
+        return subprocess.run(self.words(address, *more, sequence=sequence), text=True, capture_output=True, timeout=300)
+
+    def serve(self, sequence="one"):
+        return Served("--items", self.items, "--sequence", sequence, "--plant-seed", 7, "--observers", f"ipc://{self.folder}/boxes", "--json")
 
     def test_a_box_is_packed_through_the_robot(self):
         boxes = f"ipc://{self.folder}/boxes"
@@ -359,9 +369,55 @@ sequences:
             run = json.loads(served.end())
         self.assertEqual([box["state"] for box in run["boxes"]], ["packed"])
 
+    def test_in_lockstep_what_a_robot_did_is_the_same_each_time_and_recorded(self):
+        boxes, programs = f"ipc://{self.folder}/boxes", []
+        for name in ("first", "second"):
+            run, program = self.folder / f"{name}.h5", self.folder / f"{name}.csv"
+            with self.serve("three") as served:
+                packed = self.pack(f"ur://127.0.0.1:{served.offset}", "--observe", boxes, "--lockstep", "-o", run, "--program", program, sequence="three")
+                self.assertEqual(packed.returncode, 0, packed.stderr)
+                result = json.loads(packed.stdout)
+                states = [box["state"] for box in json.loads(served.end())["boxes"]]
+            self.assertEqual((result["executed_boxes"], result["boxes_lost"], states), (3, 0, ["packed"] * 3))
+            programs.append(program.read_bytes())
+        self.assertEqual(*programs)
+        for words in (("report", run, "-o", self.folder / "page.html"), ("export", run, "--format", "csv", "-o", self.folder / "run.csv")):
+            done = subprocess.run([SNUG, *map(str, words)], text=True, capture_output=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        lines = (self.folder / "run.csv").read_text(encoding="utf-8").splitlines()
+        self.assertGreater(len(lines), 1000)
+        self.assertIn("b3", lines[0])
+
+    def test_three_programs_pack_through_a_robot_and_a_camera(self):
+        boxes = f"ipc://{self.folder}/boxes"
+        camera = f"{SNUG} camera {CELL} --items {self.items} --sequence three --click {boxes} --shot {{look}} -o {{frame}}.h5"
+        with self.serve("three") as served:
+            packed = self.pack(f"ur://127.0.0.1:{served.offset}", "--observe", boxes, "--lockstep", "--perception", "frames", "--frames", camera, sequence="three")
+            self.assertEqual(packed.returncode, 0, packed.stderr)
+            states = [box["state"] for box in json.loads(served.end())["boxes"]]
+        result = json.loads(packed.stdout)
+        self.assertEqual((result["perception"], result["executed_boxes"], states), ("frames", 3, ["packed"] * 3))
+
+    def test_who_interrupts_is_told_so_and_the_session_goes_on(self):
+        boxes = f"ipc://{self.folder}/boxes"
+        with self.serve() as served:
+            address, watch = f"ur://127.0.0.1:{served.offset}", cut_robot.Watch(served.offset)
+            packing = subprocess.Popen(self.words(address, "--observe", boxes, "--log", self.folder / "log"), text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            self.assertTrue(watch.wait(lambda now: now[1] > 0.05 and now[2] & 1, 60), "the robot goes with its vacuum on")
+            packing.send_signal(signal.SIGINT)
+            out, said = packing.communicate(timeout=60)
+            self.assertEqual((packing.returncode, json.loads(out)["stop_reason"], json.loads(out)["failure"]), (1, "interrupted", ""), said)
+            self.assertIn("interrupted after", said)
+            self.assertNotIn("plant fault", said)
+            self.assertEqual(watch.now()[2] & 1, 1, "the vacuum is as it was")
+            watch.close()
+            resumed = self.pack(address, "--observe", boxes, "--lockstep", "--resume", self.folder / "log")
+            self.assertEqual(resumed.returncode, 0, resumed.stderr)
+            self.assertEqual(json.loads(resumed.stdout)["executed_boxes"], 1)
+
     def test_a_client_that_is_killed_or_cut_off_leaves_a_robot_that_stands(self):
         said = []
-        cut_robot.cut_robot(SNUG, (CELL, "--items", self.items, "--sequence", "one"), 1, ("killed", "cut"), 7, said.append)
+        cut_robot.cut_robot(SNUG, (CELL, "--items", self.items, "--sequence", "three"), 1, ("killed", "cut"), 7, said.append)
         self.assertEqual(len(said), 3, said)
 
     def test_what_cannot_be_is_refused_before_anything_moves(self):
@@ -374,7 +430,8 @@ sequences:
         assert_refused(self.pack("ur://127.0.0.1:9000", "--perception", "exact"), "--observe")
         assert_refused(self.pack("ur://127.0.0.1:9000", "--perception", "dead-reckoning", "--plant-timeout", 0.5), "39001")
         assert_refused(self.pack("simulated", "--dry-run"), "--dry-run", "ur://HOST")
-        for words in (("--fault", "drop@1"), ("-o", self.folder / "run.h5"), ("--robot", "none")):
+        assert_refused(self.pack("simulated", "--lockstep"), "--lockstep", "ur://HOST")
+        for words in (("--fault", "drop@1"), ("--robot", "none")):
             assert_refused(self.pack("ur://127.0.0.1:9000", *words), words[0])
         with Served() as served:
             dashboard = Dashboard(served)

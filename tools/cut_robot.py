@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """cut_robot.py: what becomes of a served UR whose client is killed, frozen, or cut off from it, at instants drawn while it packs.
 
-  cut_robot.py N            N of each, in sessions of their own: the robot has to stand within 0.2 s of its own time, its outputs as they were, and no
-                            box is lost
+  cut_robot.py N            N of each: the robot has to stand within 0.2 s of its own time, its outputs as they were, and the session has to go on
+                            (a frozen client by itself, the others by --resume); in the end no box is lost
   cut_robot.py N --how cut  of one kind: killed, frozen, cut
+  cut_robot.py N --fresh    each instant in a session of its own, which does not go on
 
 The client reaches the robot through a relay of this program, which stops to forward in both directions where it is cut: nobody is told. Boxes are
 told over a socket of its own (--observe), which is not cut. Exit code 1: something was not as it has to be."""
@@ -99,6 +100,14 @@ class Relay:
     def cut(self):
         self.passes = False
 
+    def mend(self):
+        """The connections that were cut are gone; new ones pass."""
+        time.sleep(0.05)
+        for one in list(self.pairs):
+            self.pairs.pop(one)
+            one.close()
+        self.passes = True
+
     def end(self):
         self.ends = True
         self.thread.join()
@@ -150,10 +159,12 @@ class Watch:
 
 
 class Cell:
-    """A served UR with a relay before it, and a client that packs it."""
+    """A served UR with a relay before it, and the clients that pack it one after the other."""
 
     def __init__(self, snug, words, folder):
         self.snug, self.words, self.folder = snug, words, folder
+        self.clients = 0
+        self.log = None
         self.client = None
         self.boxes = f"ipc://{folder}/boxes"
         for offset in range(3000 + os.getpid() % 100 * 100, 30000, 100):
@@ -169,9 +180,13 @@ class Cell:
         self.relay, self.watch = Relay(offset), Watch(offset)
 
     def start(self):
-        self.said = open(self.folder / "client", "w+", encoding="utf-8")  # noqa: SIM115
+        """The session, or the rest of it."""
+        resume = ["--resume", self.log] if self.log else []
+        self.log = self.folder / f"session-{self.clients}.jsonl"
+        self.said = open(self.folder / f"client-{self.clients}", "w+", encoding="utf-8")  # noqa: SIM115
+        self.clients += 1
         self.client = subprocess.Popen([self.snug, "pack", *self.words, "--samples", "0", "--decision-time", "0.02", "--plant", f"ur://127.0.0.1:{self.relay.offset}",
-                                        "--plant-timeout", PATIENCE, "--observe", self.boxes], stdout=self.said, stderr=self.said)
+                                        "--plant-timeout", PATIENCE, "--observe", self.boxes, "--log", self.log, *resume], stdout=self.said, stderr=self.said)
 
     def has_ended(self):
         return self.client is not None and self.client.poll() is not None
@@ -182,10 +197,9 @@ class Cell:
 
     def end(self):
         """What became of each box."""
-        if self.client:
+        if self.client and self.client.poll() is None:
             self.client.kill()
             self.client.wait()
-            self.said.close()
         self.relay.end()
         self.watch.close()
         self.served.send_signal(signal.SIGINT)
@@ -224,7 +238,24 @@ def strike(cell, how, draw):
     return (moved[-1] - stamp if moved else 0.0), bool(outputs & 1)
 
 
-def cut_robot(snug, words, count, hows=HOWS, seed=1, say=print):
+def go_on(cell, how):
+    """The client comes back, or another one does."""
+    if how == "frozen":
+        cell.client.send_signal(signal.SIGCONT)
+    else:
+        try:
+            cell.client.wait(30)
+        except subprocess.TimeoutExpired:
+            raise Found(f"{how}: the client does not end: {cell.why()}") from None
+        cell.relay.mend()
+        cell.start()
+    if not cell.watch.wait(lambda now: now[3] == 2 or cell.has_ended(), 60):
+        raise Found(f"{how}: the session does not go on: {cell.why()}")
+    if cell.has_ended() and cell.client.returncode == 2:
+        raise Found(f"{how}: the session does not go on: {cell.why()}")
+
+
+def cut_robot(snug, words, count, hows=HOWS, seed=1, say=print, goes_on=True):
     """`words`: scenario and sequence. Raises Found."""
     draw, longest, held, sessions, became = random.Random(seed), collections.Counter(), collections.Counter(), 0, collections.Counter()
     cell = None
@@ -253,13 +284,21 @@ def cut_robot(snug, words, count, hows=HOWS, seed=1, say=print):
                     longest[how] = max(longest[how], took)
                     held[how] += is_on
                     done += 1
-                    became += cell.end()
-                    cell = None
-                say(f"{how}: {count} times, with the vacuum on {held[how]} times; the robot stood within {longest[how]:.3f} s, outputs as they were")
+                    if goes_on:
+                        go_on(cell, how)
+                    else:
+                        became += cell.end()
+                        cell = None
+                say(f"{how}: {count} times, with the vacuum on {held[how]} times; the robot stood within {longest[how]:.3f} s, outputs as they were"
+                    + ("; the session went on" if goes_on else ""))
+            if cell:  # the last session, to its end
+                cell.client.wait(900)
+                if cell.client.returncode != 0:
+                    raise Found(f"the session ended with {cell.client.returncode}: {cell.why()}")
         finally:
             if cell:
                 became += cell.end()
-    lost = sum(became[state] for state in ("lost", "dropped", "outside"))
+    lost = sum(became[state] for state in ("lost", "dropped", "outside", *(["held"] if goes_on else [])))
     say(f"{sessions} sessions, boxes: {', '.join(f'{number} {state}' for state, number in sorted(became.items()))}")
     if lost:
         raise Found(f"{lost} boxes are lost")
@@ -269,13 +308,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("count", type=int)
     parser.add_argument("--how", choices=HOWS, action="append")
+    parser.add_argument("--fresh", action="store_true")
     parser.add_argument("--sequence", default="1")
     parser.add_argument("--snug", default=str(ROOT / "build" / "snug"), help="the program (default: build/snug)")
     parser.add_argument("--seed", type=int, default=1)
     words = parser.parse_args()
     try:
         cut_robot(words.snug, (DEMONSTRATOR, "--sequence", words.sequence), words.count, words.how or HOWS, words.seed,
-                  lambda line: print(line, flush=True))
+                  lambda line: print(line, flush=True), not words.fresh)
     except Found as found:
         print(f"FOUND: {found}")
         sys.exit(1)

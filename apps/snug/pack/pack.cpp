@@ -77,6 +77,7 @@ void refuse_options_of_a_robot(const PackOptions& options) {
   };
   if (options.observe) refuse("--observe", "'" + *options.observe + "'");
   if (options.is_dry) refuse("--dry-run", "");
+  if (options.is_in_lockstep) refuse("--lockstep", "");
   if (options.may_move) refuse("--yes-this-moves-a-robot", "");
 }
 
@@ -118,16 +119,22 @@ struct PackFiles {
 }  // namespace
 
 simulated_plant::LiveRecordingOptions recording_of(const simulated_plant::SimulatedPlantOptions& plant,
-                                                   const std::string& agent, OutputFile& file) {
+                                                   const std::string& agent, OutputFile& file,
+                                                   const std::string& address) {
   const std::string& robot = plant.simulation.robot;
   simulated_plant::LiveRecordingOptions recording;
   recording.file = &file;
   recording.version = version_text();
-  recording.settings_json =
-      nlohmann::ordered_json{{"cup", "phases"},          {"controller", motion::name_of(plant.simulation.tracking)},
-                             {"corrections", "none"},    {"robot", robot.empty() ? "none" : robot},
-                             {"plant_seed", plant.seed}, {"agent", agent}}
-          .dump();
+  nlohmann::ordered_json settings{{"cup", "phases"},
+                                  {"controller", motion::name_of(plant.simulation.tracking)},
+                                  {"corrections", "none"},
+                                  {"robot", robot.empty() ? "none" : robot}};
+  if (address.empty())
+    settings["plant_seed"] = plant.seed;
+  else
+    settings["plant"] = address;
+  settings["agent"] = agent;
+  recording.settings_json = settings.dump();
   return recording;
 }
 
@@ -215,13 +222,15 @@ int run_pack(const PackOptions& options) {
     if (options.json && line) line(so_far, item, items);
   };
   study::TrialFiles written;
-  if (files.record) written.recording = recording_of(plant, session.agent, *files.record);
+  const bool is_elsewhere = is_served && !options.is_dry;
+  if (files.record)
+    written.recording = recording_of(plant, session.agent, *files.record, is_elsewhere ? options.plant : std::string());
   if (files.live && written.recording) written.recording->observer = &*files.live;
   written.describe = [](const runs::RunResult& one) { return runs::format_result(one); };
   if (files.program) written.program = &*files.program;
   const study::Trial trial =
-      options.plant.starts_with("ur://") ? run_ur_trial(options, scenario, session, plant, progress, written.program)
-      : is_served                        ? run_served_trial(options, scenario, session, progress, written.program)
+      options.plant.starts_with("ur://") ? run_ur_trial(options, scenario, session, plant, progress, written)
+      : is_served                        ? run_served_trial(options, scenario, session, progress, written)
                   : study::run_trial(scenario, options.sequence, session, plant, progress, written);
   if (files.live) files.live->finish();
   const session::SessionResult& result = trial.session;

@@ -25,6 +25,7 @@ struct PackOptions {
   std::string plant = "simulated";           ///< or where one is: click://HOST:PORT, click+ipc://PATH, ur://HOST
   std::optional<std::string> observe;        ///< CLICK address of who tells where boxes are, of ur://HOST
   bool is_dry = false;                       ///< of ur://HOST
+  bool is_in_lockstep = false;               ///< of ur://HOST: a cell that is served, without a clock
   bool may_move = false;                     ///< a robot that is not on this machine
   double part_patience = 600.0;              ///< s, that a box may take to come to the aligner of ur://HOST
   double patience = 10.0;                    ///< s, for its answers
@@ -63,12 +64,11 @@ void add_packing_options(CLI::App& verb, PackOptions& options);
 /// Throws InputError for words that say nothing.
 [[nodiscard]] simulated_plant::SimulatedPlantOptions make_plant_options(const PackOptions& options,
                                                                         const session::SessionOptions& session);
-/// Packs the plant that is served at `options.plant`, scored by its object sensors. `program`: plant::SentProgram, or
-/// nullptr. Throws InputError where it cannot
+/// Packs the plant that is served at `options.plant`, scored by its object sensors. Throws InputError where it cannot
 /// be had.
 [[nodiscard]] study::Trial run_served_trial(const PackOptions& options, const model::Scenario& scenario,
                                             const session::SessionOptions& session,
-                                            const study::TrialProgress& progress, OutputFile* program);
+                                            const study::TrialProgress& progress, const study::TrialFiles& files);
 /// Throws InputError for options that only a simulated plant has.
 void expect_options_of_a_served_plant(const PackOptions& options, const session::SessionOptions& session);
 /// Packs through the controller of Universal Robots at `options.plant` (ur://HOST), scored by what its observer says,
@@ -76,13 +76,14 @@ void expect_options_of_a_served_plant(const PackOptions& options, const session:
 [[nodiscard]] study::Trial run_ur_trial(const PackOptions& options, const model::Scenario& scenario,
                                         const session::SessionOptions& session,
                                         const simulated_plant::SimulatedPlantOptions& plant,
-                                        const study::TrialProgress& progress, OutputFile* program);
+                                        const study::TrialProgress& progress, const study::TrialFiles& files);
 /// Where frames come from with --frames; empty without. Throws InputError where perception and source do not go
 /// together, and where there is no such source.
 [[nodiscard]] camera::FrameSource make_frames(const PackOptions& options, const model::Scenario& scenario);
-/// What the recording of a simulated plant says of how it was made.
+/// What the recording of a plant says of how it was made. `address`: of a plant that is elsewhere.
 [[nodiscard]] simulated_plant::LiveRecordingOptions recording_of(const simulated_plant::SimulatedPlantOptions& plant,
-                                                                 const std::string& agent, OutputFile& file);
+                                                                 const std::string& agent, OutputFile& file,
+                                                                 const std::string& address = {});
 /// A line on a terminal that is written over again, or nothing.
 [[nodiscard]] study::TrialProgress make_progress_line(const std::string& label);
 

@@ -143,6 +143,9 @@ void add_pack(CLI::App& app, Action& action) {
   verb.add_flag("--dry-run", options->is_dry,
                 "of ur://HOST: a simulated plant is packed, and the robot makes each motion first, 20 mm higher, at a "
                 "quarter of the speed, without vacuum");
+  verb.add_flag("--lockstep", options->is_in_lockstep,
+                "of ur://HOST: a served cell makes a period when this program says so, as fast as both go, and waits "
+                "else: the same run each time");
   verb.add_flag("--yes-this-moves-a-robot", options->may_move,
                 "of ur://HOST: demanded for every address but this machine's own");
   verb.add_option("--part-timeout", options->part_patience,

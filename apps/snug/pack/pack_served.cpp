@@ -2,8 +2,8 @@
 #include "apps/snug/pack/pack.hpp"
 #include "apps/snug/pack/watched_boxes.hpp"
 #include "snug/core/input_error.hpp"
-#include "snug/plant/sent_program.hpp"
 #include "snug/remote_plant/remote_plant.hpp"
+#include "snug/study/witness.hpp"
 
 namespace snug::app {
 
@@ -15,13 +15,12 @@ void expect_options_of_a_served_plant(const PackOptions& options, const session:
     refuse("--plant-set", options.plant_set.front(), "nothing: a served cell is what `snug serve --set` says");
   }
   if (!options.fault.empty()) refuse("--fault", options.fault, "no faults: they are made in a simulated plant alone");
-  if (options.record) refuse("-o", *options.record, "no recording here: `snug serve -o` records what it serves");
   if (session.simulation.robot.empty()) refuse("--robot", "none", "the scenario's robot: a served plant has one");
 }
 
 study::Trial run_served_trial(const PackOptions& options, const model::Scenario& scenario,
                               const session::SessionOptions& session, const study::TrialProgress& progress,
-                              OutputFile* program) {
+                              const study::TrialFiles& files) {
   expect_options_of_a_served_plant(options, session);
   const perception::Kind kind = perception::kind_of(options.perception);
   remote_plant::RemotePlant plant(scenario, options.sequence,
@@ -31,11 +30,7 @@ study::Trial run_served_trial(const PackOptions& options, const model::Scenario&
       watch_boxes(scenario, options.sequence,
                   {[&] { return plant.boxes(); }, [&](std::size_t item) { return plant.size_of(item); },
                    [&](std::size_t item) { return plant.was_brought(item); }});
-  std::optional<plant::SentProgram> sent;
-  if (program != nullptr) sent.emplace(plant, *program, session.simulation.tracking);
-  plant::Plant& packed = sent ? static_cast<plant::Plant&>(*sent) : plant;
-  study::Trial trial = study::run_trial(scenario, options.sequence, session, packed, witness, progress);
-  if (sent) sent->finish();
+  study::Trial trial = study::run_trial(scenario, options.sequence, session, plant, witness, progress, files);
   trial.is_elsewhere = true;
   trial.plant.perception = kind;
   trial.plant.simulation = session.simulation;

@@ -9,7 +9,6 @@
 #include "apps/snug/pack/watched_boxes.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/perception/camera_perception.hpp"
-#include "snug/plant/sent_program.hpp"
 #include "snug/remote_plant/box_observer.hpp"
 #include "snug/remote_ur/dry_run.hpp"
 #include "snug/remote_ur/remote_ur.hpp"
@@ -36,13 +35,14 @@ std::unique_ptr<remote_ur::RobotLink> connect_robot(const PackOptions& options, 
   const remote_ur::Endpoint endpoint = ur_endpoint_of(options);
   if (!scenario.robot) throw InputError(scenario.source_name, "robot", "nothing", "a scenario with a robot");
   remote_ur::refuse_what_differs(remote_ur::compare_robot(remote_ur::read_robot(endpoint), scenario), options.plant);
-  return std::make_unique<remote_ur::RtdeLink>(endpoint);
+  return std::make_unique<remote_ur::RtdeLink>(endpoint, options.is_in_lockstep);
 }
 
 remote_ur::RemoteUrOptions robot_options(const PackOptions& options, const session::SessionOptions& session) {
   remote_ur::RemoteUrOptions robot;
   robot.motions = session.simulation;
   robot.part_patience = options.part_patience;
+  robot.is_in_time = !options.is_in_lockstep;
   robot.is_dry = options.is_dry;
   robot.is_interrupted = is_interrupted;
   return robot;
@@ -53,9 +53,18 @@ void tell_late_periods(remote_ur::RemoteUr& robot) {
     std::fprintf(stderr, "snug: %d periods of the robot without a new target\n", late);
 }
 
+/// A box in the cup is one that a session before this one held; where it hangs somebody has to see.
+void refuse_held_box(const PackOptions& options, const model::Scenario& scenario, const plant::Feedback& robot) {
+  const double held = scenario.motion_guards.needed_vacuum * scenario.cup.vacuum.pressure_gauge_hold;
+  if (!robot.io.vacuum || robot.pressure_gauge >= held || (options.resume && options.observe)) return;
+  throw InputError("command line", "--plant", "'" + options.plant + "', whose cup holds a box",
+                   options.resume ? "--observe ADDRESS, or the box at the aligner: take it out of the cup by hand"
+                                  : "an empty cup: take the box out of it, or go on by --resume LOG --observe ADDRESS");
+}
+
 study::Trial run_dry(const PackOptions& options, const model::Scenario& scenario,
                      const session::SessionOptions& session, const simulated_plant::SimulatedPlantOptions& simulated,
-                     const study::TrialProgress& progress, OutputFile* program) {
+                     const study::TrialProgress& progress, const study::TrialFiles& files) {
   simulated_plant::SimulatedPlant plant(scenario, options.sequence, simulated);
   remote_ur::RemoteUrOptions with_robot = robot_options(options, session);
   with_robot.link = connect_robot(options, scenario);
@@ -68,11 +77,8 @@ study::Trial run_dry(const PackOptions& options, const model::Scenario& scenario
                      fmt::format("the robot at the scenario's start: movej([{:.4f}])", fmt::join(wanted, ", ")));
   }
   remote_ur::DryRun both(plant, robot);
-  std::optional<plant::SentProgram> sent;
-  if (program != nullptr) sent.emplace(both, *program, session.simulation.tracking);
-  plant::Plant& packed = sent ? static_cast<plant::Plant&>(*sent) : both;
-  study::Trial trial = study::run_trial(scenario, options.sequence, session, packed, study::truth_of(plant), progress);
-  if (sent) sent->finish();
+  study::Trial trial =
+      study::run_trial(scenario, options.sequence, session, both, study::truth_of(plant), progress, files);
   trial.plant_seed = simulated.seed;
   trial.plant = simulated;
   tell_late_periods(robot);
@@ -85,10 +91,10 @@ study::Trial run_dry(const PackOptions& options, const model::Scenario& scenario
 study::Trial run_ur_trial(const PackOptions& options, const model::Scenario& scenario,
                           const session::SessionOptions& session,
                           const simulated_plant::SimulatedPlantOptions& simulated, const study::TrialProgress& progress,
-                          OutputFile* program) {
+                          const study::TrialFiles& files) {
   expect_options_of_a_served_plant(options, session);
   (void)ur_endpoint_of(options);
-  if (options.is_dry) return run_dry(options, scenario, session, simulated, progress, program);
+  if (options.is_dry) return run_dry(options, scenario, session, simulated, progress, files);
   const perception::Kind kind = perception::kind_of(options.perception);
   const bool needs_truth = kind != perception::Kind::DeadReckoning && kind != perception::Kind::Frames;
   if (needs_truth && !options.observe) {
@@ -101,7 +107,13 @@ study::Trial run_ur_trial(const PackOptions& options, const model::Scenario& sce
   with_robot.link = connect_robot(options, scenario);
   with_robot.perception =
       perception::make_perception(kind, options.plant_seed, scenario, make_frames(options, scenario));
-  if (session.resume) with_robot.brought = session.resume->item_count();
+  session::SessionOptions with_resume = session;
+  if (session.resume) {
+    with_resume.takes_over = true;
+    with_robot.brought = session.resume->item_count();
+    for (const model::ItemIndex item : session.resume->to_do)
+      with_robot.to_do.push_back(session.resume->started().items[item.slot()].value);
+  }
   if (observer) {
     with_robot.boxes = [&observer](std::vector<perception::SceneBox>& boxes) {
       std::string trouble = observer->look();
@@ -112,6 +124,7 @@ study::Trial run_ur_trial(const PackOptions& options, const model::Scenario& sce
     };
   }
   remote_ur::RemoteUr robot(scenario, options.sequence, std::move(with_robot));
+  refuse_held_box(options, scenario, robot.read());
   BoxSource source;
   source.boxes = [&]() -> std::vector<std::optional<perception::SceneBox>> {
     if (!observer) return robot.perceived();
@@ -121,11 +134,7 @@ study::Trial run_ur_trial(const PackOptions& options, const model::Scenario& sce
   source.size_of = [&](std::size_t item) { return observer ? observer->size_of(item) : robot.size_of(item); };
   source.was_brought = [&](std::size_t item) { return robot.was_brought(item); };
   const study::Witness witness = watch_boxes(scenario, options.sequence, std::move(source));
-  std::optional<plant::SentProgram> sent;
-  if (program != nullptr) sent.emplace(robot, *program, session.simulation.tracking);
-  plant::Plant& packed = sent ? static_cast<plant::Plant&>(*sent) : robot;
-  study::Trial trial = study::run_trial(scenario, options.sequence, session, packed, witness, progress);
-  if (sent) sent->finish();
+  study::Trial trial = study::run_trial(scenario, options.sequence, with_resume, robot, witness, progress, files);
   trial.is_elsewhere = true;
   trial.plant.perception = kind;
   trial.plant.simulation = session.simulation;

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <utility>
 
 #include "snug/core/input_error.hpp"
 
@@ -55,6 +56,11 @@ Connection::Connection(const Endpoint& endpoint, int port)
   socklen_t size = sizeof error;
   (void)::getsockopt(socket_.get(), SOL_SOCKET, SO_ERROR, &error, &size);
   if (error != 0) fail(std::strerror(error));
+}
+
+Connection::Connection(Descriptor socket, std::string place, double patience)
+    : place_(std::move(place)), patience_(patience), socket_(std::move(socket)) {
+  begin_wait();
 }
 
 void Connection::fail(const std::string& what) const {

@@ -21,6 +21,8 @@ struct Endpoint {
 class Connection {
  public:
   Connection(const Endpoint& endpoint, int port);
+  /// Over a socket that is connected. `place`: for messages.
+  Connection(Descriptor socket, std::string place, double patience);
 
   void send(std::string_view bytes) const;
   /// The patience begins anew: of one answer.

@@ -108,6 +108,9 @@ RemoteUr::RemoteUr(const model::Scenario& scenario, const std::string& sequence,
     throw InputError("command line", "--plant", options_.link->name() + ", where the program does not start: " + why,
                      "a robot in remote control with power on, brakes released and no stop");
   }
+  switches_.vacuum = is_on(io_.vacuum, sample_.digital_outputs);
+  in_the_cell_.insert(options_.to_do.begin(), options_.to_do.end());
+  part_is_new_ = !options_.boxes;  // else it is told which it is
   stand();
   feedback_ = told_ = sensors();
   if (options_.is_in_time) thread_ = std::thread([this] { run_in_time(); });
@@ -327,7 +330,8 @@ void RemoteUr::look_for_part() {
   const bool is_there = !is_wired || is_on(io_.part_present, sample_.digital_inputs);
   if (!is_there) part_is_new_ = true;
   if (awaited_.empty()) return;
-  if (is_there && (part_is_new_ || !is_wired)) {
+  const bool has_come = in_the_cell_.contains(awaited_.front().value);
+  if (has_come || (is_there && (part_is_new_ || !is_wired))) {
     part_is_new_ = false;
     awaited_periods_ = 0;
     runner_.add({time(), plant::ItemArrived{awaited_.front()}});
@@ -349,19 +353,26 @@ void RemoteUr::set_load(double mass, const Vector3& p_FCo) {
   ++command_.payload_count;
 }
 
-/// The robot has to know what it carries: of a box that is held mass and centre, as it was perceived last.
+bool RemoteUr::is_holding() const { return switches_.vacuum && pressure() <= runner_.settings().pressure_needed; }
+
+/// With the box that the motion is for: mass and centre, as it was perceived last.
+void RemoteUr::load_item() {
+  const model::Parcel* parcel = model::find_parcel(scenario_, runner_.motion().item.value);
+  if (parcel == nullptr || options_.is_dry) return;
+  const SpatialInertia& tool = ur_arm_.tool_load();
+  const Pose X_FW = (ur_arm_.base() * ur_arm_.forward(sample_.q)).inverse();
+  const auto seen = std::ranges::find(seen_boxes_, parcel->id, &std::pair<std::string, Pose>::first);
+  const Vector3 p_FCo = seen != seen_boxes_.end() ? X_FW * (seen->second * parcel->inertia.com) : ur_arm_.tool().p;
+  const double mass = tool.mass + parcel->inertia.mass;
+  set_load(mass, (tool.mass * tool.com + parcel->inertia.mass * p_FCo) / mass);
+}
+
+/// The robot has to know what it carries.
 void RemoteUr::follow_load(const std::vector<plant::Event>& events) {
   const SpatialInertia& tool = ur_arm_.tool_load();
   for (const plant::Event& event : events) {
     if (plant::get<plant::VacuumDropped>(event) != nullptr) set_load(tool.mass, tool.com);
-    if (plant::get<plant::VacuumBuilt>(event) == nullptr || options_.is_dry) continue;
-    const model::Parcel* parcel = model::find_parcel(scenario_, runner_.motion().item.value);
-    if (parcel == nullptr) continue;
-    const Pose X_FW = (ur_arm_.base() * ur_arm_.forward(sample_.q)).inverse();
-    const auto seen = std::ranges::find(seen_boxes_, parcel->id, &std::pair<std::string, Pose>::first);
-    const Vector3 p_FCo = seen != seen_boxes_.end() ? X_FW * (seen->second * parcel->inertia.com) : ur_arm_.tool().p;
-    const double mass = tool.mass + parcel->inertia.mass;
-    set_load(mass, (tool.mass * tool.com + parcel->inertia.mass * p_FCo) / mass);
+    if (plant::get<plant::VacuumBuilt>(event) != nullptr) load_item();
   }
   if (!switches_.vacuum && command_.payload != tool.mass) set_load(tool.mass, tool.com);
 }
@@ -477,7 +488,8 @@ void RemoteUr::start(const plant::Motion& motion) {
   }
   plan_ = std::move(plan);
   stand();
-  runner_.begin(sent, reading(), switches_.vacuum && pressure() <= runner_.settings().pressure_needed);
+  runner_.begin(sent, reading(), is_holding());
+  if (is_holding() && command_.payload == ur_arm_.tool_load().mass) load_item();  // it hung there before
   row_ = -1;
   is_waiting_ = is_stuck_ = is_braking_ = false;
   if (!is_stopped_) return;
@@ -545,8 +557,11 @@ std::vector<plant::Event> RemoteUr::advance() {
   if (results_.empty()) {
     if (options_.is_interrupted && options_.is_interrupted()) {
       cancel_motion();
-      if (!awaited_.empty()) fail("interrupted while it waits for a box");
-      if (!failure_.empty()) push_result();
+      if (!awaited_.empty()) {
+        awaited_.clear();
+        runner_.add({time(), plant::FaultRaised{plant::EndReason::Cancelled, "interrupted while it waited for a box"}});
+        push_result();
+      }
     }
     if (!is_moving_ && awaited_.empty()) return {};
     if (!failure_.empty() && runner_.is_moving()) {
@@ -575,7 +590,10 @@ std::vector<plant::Event> RemoteUr::advance() {
 bool RemoteUr::bring(const model::ParcelId& item) {
   const auto found = std::ranges::find(sequence_.items, item.value, &model::Item::parcel);
   const auto index = static_cast<std::size_t>(found - sequence_.items.begin());
+  std::vector<perception::SceneBox> boxes;
+  if (options_.boxes) (void)options_.boxes(boxes);  // without an answer the sensor tells
   const std::lock_guard lock(mutex_);
+  if (std::ranges::find(boxes, item.value, &perception::SceneBox::item) != boxes.end()) in_the_cell_.insert(item.value);
   if (found == sequence_.items.end() || was_brought_[index] || !failure_.empty()) return false;
   was_brought_[index] = true;
   awaited_.push_back(item);
@@ -598,8 +616,9 @@ void RemoteUr::perceive(std::span<const perception::Expectation> expected) {
   if (failure.empty() && options_.boxes) failure = options_.boxes(boxes);
   for (perception::SceneBox& box : boxes) {
     const auto item = std::ranges::find(sequence_.items, box.item, &model::Item::parcel);
-    if (item == sequence_.items.end() || !was_brought_[static_cast<std::size_t>(item - sequence_.items.begin())])
-      continue;
+    if (item == sequence_.items.end()) continue;
+    const bool was_brought = was_brought_[static_cast<std::size_t>(item - sequence_.items.begin())];
+    if (!was_brought && std::ranges::find(options_.to_do, box.item) == options_.to_do.end()) continue;
     scene.boxes.push_back(std::move(box));
   }
   perception::Observation observation = options_.perception->perceive(scene, expected);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -34,7 +35,10 @@ struct RemoteUrOptions {
   /// speed.
   bool is_dry = false;
   std::function<bool()> is_interrupted = {};  ///< then the robot stops where it is
-  int brought = 0;                            ///< items of the sequence that came in a session before this one
+  int brought = 0;                            ///< items of the sequence that a session before this one has done with
+  /// Items that came before and are not done with: they are somewhere in the cell, and have come as soon as they are
+  /// asked for.
+  std::vector<std::string> to_do = {};
 };
 
 /// Of dry runs.
@@ -46,7 +50,8 @@ inline constexpr double kDrySpeed = 0.25;   ///< of the planned speeds
 /// the vacuum. Time of the plant is that of motions; the robot's slider slows them. Where the robot stops by itself,
 /// for protection or because targets stopped coming, the motion ends with ProtectiveStop. A box has arrived when the
 /// input for it goes on (at once where none is wired); a box that was not used is taken away when the next is asked for
-/// (robot.io, next_part), else by hand.
+/// (robot.io, next_part), else by hand. One that is told to be in the cell when it is asked for has come already: a
+/// session may go on where another ended. Outputs are taken over as they are.
 class RemoteUr final : public plant::Plant {
  public:
   /// Starts the program on the robot; nothing moves. Throws InputError where that does not run, and as cell::CellArm
@@ -103,6 +108,8 @@ class RemoteUr final : public plant::Plant {
   void ask_for_part();
   void follow_load(const std::vector<plant::Event>& events);
   void set_load(double mass, const Vector3& p_FCo);
+  void load_item();
+  [[nodiscard]] bool is_holding() const;
   void begin_braking();
   void end_motion();
   void stand();
@@ -155,7 +162,8 @@ class RemoteUr final : public plant::Plant {
   std::int64_t moving_periods_ = 0;
   bool is_stopped_ = false, is_stop_told_ = false;
   std::string stop_reason_;
-  std::string failure_;  ///< why no motion can follow
+  std::string failure_;                ///< why no motion can follow
+  std::set<std::string> in_the_cell_;  ///< items, before they are asked for
   plant::Feedback feedback_;
   std::deque<model::ParcelId> awaited_;
   std::int64_t awaited_periods_ = 0;

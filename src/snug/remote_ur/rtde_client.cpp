@@ -16,6 +16,10 @@ namespace {
 using ur::rtde::Frame;
 
 constexpr int kPort = 30004;
+constexpr std::uint64_t kExact = (std::uint64_t{1} << 53U) - 1;  // of words of 64 bits, what a double holds
+
+/// A type is that of all controllers; `known` is none for a name that is not known here.
+bool is_as_known(const char* known, std::string_view type) { return known == nullptr || known == type; }
 
 std::vector<std::string> split(std::string_view text) {
   std::vector<std::string> words;
@@ -43,7 +47,7 @@ double read_number(ur::ByteReader& in, char kind) {
     case 'u':
       return in.u32();
     case 'q':
-      return static_cast<double>(in.u64());
+      return static_cast<double>(in.u64() & kExact);
     case 'b':
       return in.u8();
     default:
@@ -67,20 +71,26 @@ void write_number(ur::ByteWriter& out, char kind, double value) {
 }  // namespace
 
 RtdeClient::RtdeClient(const Endpoint& endpoint, const std::vector<std::string>& outputs, double frequency,
-                       const std::vector<std::string>& inputs) {
-  connect(endpoint);
+                       const std::vector<std::string>& inputs)
+    : RtdeClient([endpoint] { return Connection(endpoint, kPort); }, outputs, frequency, inputs) {}
+
+RtdeClient::RtdeClient(std::function<Connection()> connect_to, const std::vector<std::string>& outputs,
+                       double frequency, const std::vector<std::string>& inputs)
+    : connect_(std::move(connect_to)) {
+  connect();
   std::vector<std::string> types = set_up(outputs, frequency);
   std::vector<std::string> known;
   for (std::size_t i = 0; i < outputs.size(); ++i) (types[i] == "NOT_FOUND" ? unknown_ : known).push_back(outputs[i]);
   if (known.empty()) connection_->fail("none of the outputs is known there");
   if (!unknown_.empty()) {  // a recipe that was refused is not mended: clients begin anew
-    connect(endpoint);
+    connect();
     types = set_up(known, frequency);
   }
   for (std::size_t i = 0; i < known.size(); ++i) {
     const std::string& type = types[i];
     const char kind = kind_of(type);
-    if (kind == '?') connection_->fail(fmt::format("output '{}' has the type '{}'", known[i], type));
+    if (kind == '?' || !is_as_known(ur::rtde::output_type(known[i]), type))
+      connection_->fail(fmt::format("output '{}' has the type '{}'", known[i], printable(type, 50)));
     const std::size_t count = type.starts_with("VECTOR6") ? 6 : type.starts_with("VECTOR3") ? 3 : 1;
     outputs_.push_back({known[i], kind, count});
   }
@@ -88,8 +98,8 @@ RtdeClient::RtdeClient(const Endpoint& endpoint, const std::vector<std::string>&
   if (ask(Frame::Start, "") != "\x01") connection_->fail("the controller does not start to send");
 }
 
-void RtdeClient::connect(const Endpoint& endpoint) {
-  connection_.emplace(endpoint, kPort);
+void RtdeClient::connect() {
+  connection_.emplace(connect_());
   ur::ByteWriter wanted;
   wanted.u16(2);
   if (ask(Frame::Version, wanted.bytes()) != "\x01") connection_->fail("no version 2 of RTDE");
@@ -121,8 +131,9 @@ void RtdeClient::set_up_inputs(const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (types[i] == "IN_USE") connection_->fail(fmt::format("another client holds the input '{}'", names[i]));
     const char kind = kind_of(types[i]);
-    if (kind == '?' || kind == 'q' || types[i].starts_with("VECTOR"))
-      connection_->fail(fmt::format("input '{}' has the type '{}'", names[i], types[i]));
+    if (kind == '?' || kind == 'q' || types[i].starts_with("VECTOR") ||
+        !is_as_known(ur::rtde::input_type(names[i]), types[i]))
+      connection_->fail(fmt::format("input '{}' has the type '{}'", names[i], printable(types[i], 50)));
     input_kinds_.push_back(kind);
   }
 }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -26,6 +27,9 @@ class RtdeClient {
   /// controller does not know, or that another client holds, is a failure.
   RtdeClient(const Endpoint& endpoint, const std::vector<std::string>& outputs, double frequency,
              const std::vector<std::string>& inputs = {});
+  /// `connect`: called once, and again where the controller does not know an output.
+  RtdeClient(std::function<Connection()> connect, const std::vector<std::string>& outputs, double frequency,
+             const std::vector<std::string>& inputs = {});
 
   /// Major, minor, bugfix, build.
   [[nodiscard]] const std::array<std::uint32_t, 4>& version() const { return version_; }
@@ -41,12 +45,13 @@ class RtdeClient {
     char kind = 'd';  ///< of each number: d double, i int32, u uint32, q uint64, b byte
     std::size_t count = 1;
   };
-  void connect(const Endpoint& endpoint);
+  void connect();
   [[nodiscard]] std::string await(ur::rtde::Frame type);
   [[nodiscard]] std::string ask(ur::rtde::Frame type, std::string_view payload);
   [[nodiscard]] std::vector<std::string> set_up(const std::vector<std::string>& names, double frequency);
   void set_up_inputs(const std::vector<std::string>& names);
 
+  std::function<Connection()> connect_;
   std::optional<Connection> connection_;
   std::array<std::uint32_t, 4> version_{};
   std::vector<std::string> unknown_;

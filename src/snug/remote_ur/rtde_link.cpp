@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "snug/core/input_error.hpp"
 #include "snug/core/text.hpp"
@@ -19,27 +21,28 @@ constexpr int kDashboardPort = 29999, kPrimaryPort = 30001;
 constexpr int kLargestOffset = 65535 - 30004;
 constexpr std::string_view kScheme = "ur://";
 
-const std::vector<std::string>& output_names() {
-  static const std::vector<std::string> names = {"timestamp",
-                                                 "actual_q",
-                                                 "actual_qd",
-                                                 "target_q",
-                                                 "target_moment",
-                                                 "actual_TCP_force",
-                                                 "actual_digital_input_bits",
-                                                 "actual_digital_output_bits",
-                                                 "standard_analog_input0",
-                                                 "standard_analog_input1",
-                                                 "tool_analog_input0",
-                                                 "tool_analog_input1",
-                                                 "target_speed_fraction",
-                                                 "robot_mode",
-                                                 "safety_mode",
-                                                 "runtime_state",
-                                                 "payload",
-                                                 "payload_cog",
-                                                 fmt::format("output_int_register_{}", kFirstRegister),
-                                                 fmt::format("output_int_register_{}", kFirstRegister + 1)};
+std::vector<std::string> output_names(bool is_in_lockstep) {
+  std::vector<std::string> names = {"timestamp",
+                                    "actual_q",
+                                    "actual_qd",
+                                    "target_q",
+                                    "target_moment",
+                                    "actual_TCP_force",
+                                    "actual_digital_input_bits",
+                                    "actual_digital_output_bits",
+                                    "standard_analog_input0",
+                                    "standard_analog_input1",
+                                    "tool_analog_input0",
+                                    "tool_analog_input1",
+                                    "target_speed_fraction",
+                                    "robot_mode",
+                                    "safety_mode",
+                                    "runtime_state",
+                                    "payload",
+                                    "payload_cog",
+                                    fmt::format("output_int_register_{}", kFirstRegister),
+                                    fmt::format("output_int_register_{}", kFirstRegister + 1)};
+  if (is_in_lockstep) names.emplace_back(ur::rtde::kLockstep);
   return names;
 }
 
@@ -143,11 +146,24 @@ void refuse_what_differs(const std::vector<Finding>& findings, const std::string
   if (!got.empty()) throw InputError("command line", "--plant", "'" + address + "': " + got, expected);
 }
 
-RtdeLink::RtdeLink(const Endpoint& endpoint)
-    : endpoint_(endpoint), rtde_(endpoint, output_names(), 0.0, input_names()) {
+RtdeLink::RtdeLink(const Endpoint& endpoint, bool is_in_lockstep)
+    : endpoint_(endpoint), rtde_(endpoint, output_names(is_in_lockstep), 0.0, input_names()) {
+  if (std::ranges::find(rtde_.unknown(), ur::rtde::kLockstep) != rtde_.unknown().end()) {
+    throw InputError("command line", "--lockstep", endpoint.host + ", whose clock nobody can stop",
+                     "a cell of `snug serve --ur`");
+  }
+  expect_needed();
+}
+
+RtdeLink::RtdeLink(std::function<Connection()> connect)
+    : rtde_(std::move(connect), output_names(false), 0.0, input_names()) {
+  expect_needed();
+}
+
+void RtdeLink::expect_needed() const {
   for (const char* name : kNeeded) {
     if (std::ranges::find(rtde_.unknown(), name) == rtde_.unknown().end()) continue;
-    throw InputError("command line", "--plant", endpoint.host + ", which does not tell " + name,
+    throw InputError("command line", "--plant", endpoint_.host + ", which does not tell " + name,
                      "a controller with software 3.9, 5.3 or later");
   }
 }
@@ -160,7 +176,12 @@ std::string RtdeLink::name() const {
 std::string RtdeLink::exchange(const RobotCommand& command, RobotSample& sample) {
   try {
     rtde_.send(input_values(command));
-    sample = sample_of(rtde_.receive());
+    const RtdeValues values = rtde_.receive();
+    for (const auto& [name, numbers] : values) {
+      if (!std::ranges::all_of(numbers, [](double one) { return std::isfinite(one); }))
+        return fmt::format("{}: {} is no number", this->name(), name);
+    }
+    sample = sample_of(values);
   } catch (const InputError& error) {
     return fmt::format("{}: {}", error.key, error.got);
   }

@@ -19,9 +19,12 @@ void refuse_what_differs(const std::vector<Finding>& findings, const std::string
 
 class RtdeLink final : public RobotLink {
  public:
-  /// Throws InputError for a controller that is not there, lacks what packing needs, or whose inputs another client
-  /// holds.
-  explicit RtdeLink(const Endpoint& endpoint);
+  /// In lockstep a period is made in each exchange() and the clock stands still else: of served cells
+  /// (ur::rtde::kLockstep). Throws InputError for a controller that is not there, lacks what packing needs, or whose
+  /// inputs another client holds.
+  explicit RtdeLink(const Endpoint& endpoint, bool is_in_lockstep = false);
+  /// RTDE alone, over connections that `connect` gives: nothing can be started (tests).
+  explicit RtdeLink(std::function<Connection()> connect);
 
   [[nodiscard]] std::string name() const override;
   [[nodiscard]] double period() const override { return is_e_series() ? 0.002 : 0.008; }
@@ -32,6 +35,8 @@ class RtdeLink final : public RobotLink {
   [[nodiscard]] std::string unlock() override;
 
  private:
+  void expect_needed() const;
+
   Endpoint endpoint_;
   RtdeClient rtde_;
   std::optional<Connection> primary_;  ///< while a program is started

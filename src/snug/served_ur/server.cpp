@@ -30,6 +30,7 @@ using Clock = served_cell::Pacer::Clock;
 using internal::Connection;
 
 constexpr std::array kPorts = {Port::Dashboard, Port::Primary, Port::Secondary, Port::RealTime, Port::Rtde};
+constexpr Clock::duration kLockstepPatience = std::chrono::milliseconds(1);
 constexpr double kStatePeriod = 0.1;        // s, between robot states of the primary and secondary ports
 constexpr std::size_t kLongestLine = 4096;  // bytes, of the dashboard
 
@@ -40,13 +41,17 @@ struct Server::Impl {
 
   void run();
   void step();
-  void wait(std::vector<pollfd>& sources);
+  void go_in_time(std::vector<pollfd>& sources);
+  void go_in_lockstep(std::vector<pollfd>& sources);
+  void wait(std::vector<pollfd>& sources, Clock::duration patience);
   void accept_all(std::size_t listener);
   void greet(Connection& client);
   void read(Connection& client);
   void read_dashboard(Connection& client);
   void read_scripts(Connection& client);
   void read_rtde(Connection& client);
+  void show_observers();
+  [[nodiscard]] bool has_pace_setter() const;
   void log(const std::string& line) const {
     if (settings.log) settings.log(line);
   }
@@ -61,7 +66,8 @@ struct Server::Impl {
   std::optional<served_cell::ObserverPort> observers;
   ur::InputOwners owners;  ///< outlives the connections
   std::vector<std::unique_ptr<Connection>> clients;
-  int connections = 0;  ///< so far
+  int connections = 0;         ///< so far
+  bool is_step_asked = false;  ///< by who sets the pace
 };
 
 Server::Impl::Impl(Controller& to_serve, ServerSettings server_settings)
@@ -83,22 +89,55 @@ Server::Impl::Impl(Controller& to_serve, ServerSettings server_settings)
 }
 
 void Server::Impl::run() {
-  pacer.start(Clock::now());
   std::vector<pollfd> sources;
   while (!is_stopping) {
-    const Clock::time_point now = Clock::now();
-    if (now >= pacer.due()) {
-      pacer.step(now);
-      step();
-    }
-    wait(sources);
+    if (has_pace_setter())
+      go_in_lockstep(sources);
+    else
+      go_in_time(sources);
     std::erase_if(clients, [](const auto& client) { return !client->is_open(); });
   }
 }
 
+void Server::Impl::go_in_time(std::vector<pollfd>& sources) {
+  const Clock::time_point now = Clock::now();
+  if (!pacer.is_started()) pacer.start(now);
+  if (now >= pacer.due()) {
+    pacer.step(now);
+    step();
+  }
+  wait(sources, pacer.due() - Clock::now());
+}
+
+/// A period for each data package of who sets the pace, when all is heard that anybody had said before it.
+void Server::Impl::go_in_lockstep(std::vector<pollfd>& sources) {
+  pacer.stop();
+  const bool is_asked = is_step_asked;
+  wait(sources, is_asked ? Clock::duration::zero() : kLockstepPatience);
+  const bool is_set = has_pace_setter();
+  if (!is_asked || !is_set) {
+    is_step_asked = is_step_asked && is_set;
+    return show_observers();
+  }
+  is_step_asked = false;
+  step();
+  for (const auto& client : clients)
+    if (client->port() == Port::Rtde) read_rtde(*client);  // what came with it
+}
+
+bool Server::Impl::has_pace_setter() const {
+  return std::ranges::any_of(clients, [](const auto& client) {
+    return client->is_open() && client->port() == Port::Rtde && client->rtde->sets_pace();
+  });
+}
+
+void Server::Impl::show_observers() {
+  if (observers) observers->answer(controller.state(), controller.reading(), controller.tool_load());
+}
+
 void Server::Impl::step() {
   controller.step();
-  if (observers) observers->answer(controller.state(), controller.reading(), controller.tool_load());
+  show_observers();
   const ur::RobotData& data = controller.data();
   const auto states_each = std::llround(kStatePeriod / Controller::period_of(controller.model().model));
   std::string secondary;
@@ -119,16 +158,16 @@ void Server::Impl::step() {
   }
 }
 
-/// Until the next period is due, or somebody says something; then hears all who do.
-void Server::Impl::wait(std::vector<pollfd>& sources) {
+/// At most for `patience`, until somebody says something; then hears all who do.
+void Server::Impl::wait(std::vector<pollfd>& sources, Clock::duration patience) {
   sources.assign(1, {stop_fd.get(), POLLIN, 0});
   for (const Descriptor& listener : listeners) sources.push_back({listener.get(), POLLIN, 0});
   for (const auto& client : clients) {
     sources.push_back({client->fd(), static_cast<short>(client->has_unsent() ? POLLIN | POLLOUT : POLLIN), 0});
   }
-  const auto left = std::chrono::duration_cast<std::chrono::nanoseconds>(pacer.due() - Clock::now()).count();
-  const std::int64_t patience = std::max<std::int64_t>(0, left);
-  const timespec timeout = {static_cast<std::time_t>(patience / 1000000000), static_cast<long>(patience % 1000000000)};
+  const std::int64_t left =
+      std::max<std::int64_t>(0, std::chrono::duration_cast<std::chrono::nanoseconds>(patience).count());
+  const timespec timeout = {static_cast<std::time_t>(left / 1000000000), static_cast<long>(left % 1000000000)};
   if (::ppoll(sources.data(), sources.size(), &timeout, nullptr) <= 0) return;
   const std::size_t first_client = 1 + listeners.size();
   const std::size_t count = clients.size();
@@ -215,12 +254,14 @@ void Server::Impl::read_scripts(Connection& client) {
 }
 
 void Server::Impl::read_rtde(Connection& client) {
-  while (client.is_open()) {
+  while (client.is_open() && !(is_step_asked && client.rtde->sets_pace())) {
     const ur::rtde::NextFrame next = ur::rtde::next_frame(client.received());
     if (next.is_broken) return client.close();
     if (!next.frame) return;
-    client.send(client.rtde->answer(*next.frame, controller.inputs()).bytes);
+    const ur::RtdeSession::Reply reply = client.rtde->answer(*next.frame, controller.inputs());
+    client.send(reply.bytes);
     client.take(next.size);
+    is_step_asked = is_step_asked || (reply.sets_inputs && client.rtde->sets_pace());
   }
 }
 

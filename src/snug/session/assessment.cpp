@@ -42,6 +42,7 @@ Trouble trouble_of(plant::EndReason reason) {
     case plant::EndReason::Timeout:
       return Trouble::Timeout;
     case plant::EndReason::Cancelled:
+      return Trouble::Cancelled;
     case plant::EndReason::Refused:
     case plant::EndReason::Fault:
       return Trouble::PlantFault;

@@ -60,6 +60,8 @@ const char* name_of(Trouble trouble) {
       return "view blocked";
     case Trouble::NoFrame:
       return "no frame";
+    case Trouble::Cancelled:
+      return "interrupted";
     case Trouble::PlantFault:
       return "plant fault";
   }
@@ -102,6 +104,7 @@ Remedy choose_remedy(const Situation& at, const settings::RecoverySettings& sett
   switch (at.trouble) {
     case Trouble::None:
       return Remedy::None;
+    case Trouble::Cancelled:
     case Trouble::PlantFault:
       return Remedy::Stop;
     case Trouble::ProtectiveStop:

@@ -25,6 +25,7 @@ enum class Trouble {
   BadPicture,      ///< an observation has too few points to tell anything
   ViewBlocked,     ///< something is between camera and container
   NoFrame,         ///< the camera gives no frame that can be used
+  Cancelled,       ///< somebody ended the motion: the session was interrupted
   PlantFault,      ///< the cell itself failed
 };
 [[nodiscard]] const char* name_of(Trouble trouble);

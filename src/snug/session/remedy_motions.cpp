@@ -34,13 +34,6 @@ std::vector<motion::Waypoint> plan_put_down(const Scene& scene, const plant::Fee
   return std::move(program.waypoints);
 }
 
-/// How a box that lies or leans is put down to the aligner.
-Matrix3 rotation_at_aligner(const Scene& scene, model::ItemIndex item) {
-  const Matrix3& R_WA = scene.rules().aligner->X_WA.R;
-  const Matrix3& R_WP = scene.X_WP(item).R;
-  return R_WA * packing::rotation(packing::nearest_orientation(R_WA.transpose() * skills::leveling(R_WP) * R_WP));
-}
-
 /// A pick of the box where it lies or leans, so that it can be put down like R_WP.
 std::vector<motion::Waypoint> plan_pick_to_return(const Scene& scene, model::ItemIndex item, const Matrix3& R_WP) {
   const skills::PlannedBox box = scene.planned_box(item);
@@ -54,6 +47,12 @@ std::vector<motion::Waypoint> plan_pick_to_return(const Scene& scene, model::Ite
 }
 
 }  // namespace
+
+Matrix3 rotation_at_aligner(const Scene& scene, model::ItemIndex item) {
+  const Matrix3& R_WA = scene.rules().aligner->X_WA.R;
+  const Matrix3& R_WP = scene.X_WP(item).R;
+  return R_WA * packing::rotation(packing::nearest_orientation(R_WA.transpose() * skills::leveling(R_WP) * R_WP));
+}
 
 std::vector<motion::Waypoint> plan_retreat(const Scene& scene, const plant::Feedback& robot, const std::string& id) {
   motion::Waypoint up = motion::make_waypoint(MotionClass::PostPlace, id, robot.X_WE, {}, "_retreat");

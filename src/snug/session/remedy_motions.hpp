@@ -21,6 +21,8 @@ struct Carried {
 /// Lets go where the tool is, then straight up over everything.
 [[nodiscard]] std::vector<motion::Waypoint> plan_retreat(const planning::Scene& scene, const plant::Feedback& robot,
                                                          const std::string& id);
+/// How a box that lies, leans or hangs is put down to the aligner: on the face that is nearest to below.
+[[nodiscard]] Matrix3 rotation_at_aligner(const planning::Scene& scene, model::ItemIndex item);
 /// Presses on the box from above where it is believed to be, the vacuum off.
 [[nodiscard]] std::vector<motion::Waypoint> plan_press_on(const planning::Scene& scene, model::ItemIndex item);
 /// The held box straight up and to the flat surface where boxes are turned, which the cell has.

@@ -12,7 +12,8 @@ namespace snug::session {
 struct ResumePoint {
   std::vector<SessionEvent> events;  ///< the first is SessionStarted
   std::vector<event::Standing> boxes;
-  double time = 0.0;  ///< s, of the plant
+  double time = 0.0;                    ///< s, of the plant
+  std::vector<model::ItemIndex> to_do;  ///< items that came and are not done with, in the order in which they came
 
   [[nodiscard]] const event::SessionStarted& started() const { return std::get<event::SessionStarted>(events.front()); }
   /// How many items are done with.

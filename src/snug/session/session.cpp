@@ -136,6 +136,7 @@ SessionResult pack(const model::Scenario& scenario, const std::string& sequence,
           std::nullopt};
   prepare(run, plant.describe().name);
   if (!run.options.resume) total = static_cast<int>(run.agenda.order.size());
+  if (run.options.resume && run.options.takes_over) internal::take_over(run);
   execute(run);
   return result.result();
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "snug/plant/sent_program.hpp"
+#include "snug/study/recorded_plant.hpp"
 
 namespace snug::study {
 namespace {
@@ -146,11 +147,12 @@ Trial run_trial(const model::Scenario& scenario, const std::string& sequence, co
 
 namespace {
 
-/// What the session has to say goes into the recording when an item is done.
+/// What the session has to say goes into the recording when an item is done. `Recording`: of a simulated plant, or a
+/// RecordedPlant.
+template <class Recording>
 class RecordedSession {
  public:
-  RecordedSession(simulated_plant::SimulatedPlant& plant, const model::Scenario& scenario, const TrialFiles& files)
-      : recording_(plant, scenario, *files.recording), describe_(files.describe) {}
+  explicit RecordedSession(Recording& recording) : recording_(recording) {}
 
   void note(const session::SessionResult& so_far) {
     for (const record::Event& event : events_of(so_far)) {
@@ -159,16 +161,17 @@ class RecordedSession {
       recording_.note(event);
     }
   }
-  void close(const session::SessionResult& result) {
+  /// `more`: what else the recording's end asks for.
+  void close(const Trial& trial, const TrialFiles& files, auto... more) {
+    const session::SessionResult& result = trial.session;
     if (result.program.waypoints.empty()) return;  // no file
     note(result);
-    (void)recording_.close(
-        {warnings_of(result), result.stopped, result.stop_reason == session::StopReason::Interrupted, describe_});
+    const bool is_interrupted = result.stop_reason == session::StopReason::Interrupted;
+    (void)recording_.close({warnings_of(result), result.stopped, is_interrupted, files.describe}, std::move(more)...);
   }
 
  private:
-  simulated_plant::LiveRecording recording_;
-  std::function<std::string(const runs::RunResult&)> describe_;
+  Recording& recording_;
   std::vector<record::Event> noted_;
 };
 
@@ -178,8 +181,9 @@ Trial run_trial(const model::Scenario& scenario, const std::string& sequence, co
                 const simulated_plant::SimulatedPlantOptions& options, const TrialProgress& progress,
                 const TrialFiles& files) {
   simulated_plant::SimulatedPlant plant(scenario, sequence, options);
-  std::optional<RecordedSession> recorded;
-  if (files.recording) recorded.emplace(plant, scenario, files);
+  std::optional<simulated_plant::LiveRecording> recording;
+  std::optional<RecordedSession<simulated_plant::LiveRecording>> recorded;
+  if (files.recording) recorded.emplace(recording.emplace(plant, scenario, *files.recording));
   std::optional<plant::SentProgram> sent;
   if (files.program != nullptr) sent.emplace(plant, *files.program, session.simulation.tracking);
   const auto after_item = [&](const Trial& so_far, int item, int items) {
@@ -189,10 +193,30 @@ Trial run_trial(const model::Scenario& scenario, const std::string& sequence, co
   plant::Plant& packed = sent ? static_cast<plant::Plant&>(*sent) : plant;
   Trial trial = run_trial(scenario, sequence, session, packed, truth_of(plant), after_item);
   if (sent) sent->finish();
-  if (recorded) recorded->close(trial.session);
+  if (recorded) recorded->close(trial, files);
   trial.plant_seed = options.seed;
   trial.plant = options;
   trial.objects = plant.objects();
+  return trial;
+}
+
+Trial run_trial(const model::Scenario& scenario, const std::string& sequence, const session::SessionOptions& session,
+                plant::Plant& plant, const Witness& witness, const TrialProgress& progress, const TrialFiles& files) {
+  std::optional<RecordedPlant> recording;
+  std::optional<RecordedSession<RecordedPlant>> recorded;
+  if (files.recording)
+    recorded.emplace(recording.emplace(plant, scenario, sequence, session.simulation, *files.recording));
+  plant::Plant& seen = recording ? static_cast<plant::Plant&>(*recording) : plant;
+  std::optional<plant::SentProgram> sent;
+  if (files.program != nullptr) sent.emplace(seen, *files.program, session.simulation.tracking);
+  plant::Plant& packed = sent ? static_cast<plant::Plant&>(*sent) : seen;
+  const auto after_item = [&](const Trial& so_far, int item, int items) {
+    if (recorded) recorded->note(so_far.session);
+    if (progress) progress(so_far, item, items);
+  };
+  Trial trial = run_trial(scenario, sequence, session, packed, witness, after_item);
+  if (sent) sent->finish();
+  if (recorded) recorded->close(trial, files, trial.boxes);
   return trial;
 }
 

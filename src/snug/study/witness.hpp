@@ -30,5 +30,9 @@ struct Witness {
 [[nodiscard]] Trial run_trial(const model::Scenario& scenario, const std::string& sequence,
                               const session::SessionOptions& session, plant::Plant& plant, const Witness& witness,
                               const TrialProgress& progress = {});
+/// The same with files: a recording of what the plant says (RecordedPlant), the program that it is sent.
+[[nodiscard]] Trial run_trial(const model::Scenario& scenario, const std::string& sequence,
+                              const session::SessionOptions& session, plant::Plant& plant, const Witness& witness,
+                              const TrialProgress& progress, const TrialFiles& files);
 
 }  // namespace snug::study

@@ -192,7 +192,7 @@ RtdeSession::Reply RtdeSession::answer(const rtde::FrameView& frame, RobotInputs
 
 std::string RtdeSession::set_up_outputs(std::string_view payload) {
   is_started_ = false;
-  is_refused_ = false;
+  is_refused_ = wants_lockstep_ = false;
   frequency_ = facts_.rate;
   outputs_.clear();
   if (version_ >= 2) {
@@ -208,6 +208,7 @@ std::string RtdeSession::set_up_outputs(std::string_view payload) {
     const OutputField* field = find_field(internal::output_fields(), name);
     append(types, field != nullptr ? field->type : kNotFound);
     is_refused_ = is_refused_ || field == nullptr;
+    wants_lockstep_ = wants_lockstep_ || name == rtde::kLockstep;
     if (field != nullptr) outputs_.push_back(static_cast<std::size_t>(field - internal::output_fields().data()));
   }
   is_refused_ = is_refused_ || names.empty() || names.size() > kMostFields || types.size() > 60000;

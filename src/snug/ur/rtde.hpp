@@ -45,6 +45,9 @@ enum class From { Client, Controller };
 /// The type of an output or input field ("VECTOR6D"), nullptr for a name that is not known.
 [[nodiscard]] const char* output_type(std::string_view name);
 [[nodiscard]] const char* input_type(std::string_view name);
+/// An output that no robot has, BOOL: who asks for it, and sets inputs, sets the pace of a served cell, a period for
+/// each of its data packages.
+inline constexpr const char* kLockstep = "snug_lockstep";
 /// All names, for documents and tests, registers with their numbers.
 [[nodiscard]] std::vector<std::string> output_names();
 [[nodiscard]] std::vector<std::string> input_names();
@@ -80,6 +83,8 @@ class RtdeSession {
   [[nodiscard]] std::string package(const RobotData& data, std::int64_t period);
 
   [[nodiscard]] bool is_started() const { return is_started_; }
+  /// It is started with rtde::kLockstep among its outputs, and has inputs.
+  [[nodiscard]] bool sets_pace() const { return is_started_ && wants_lockstep_ && !inputs_.empty(); }
   [[nodiscard]] double frequency() const { return frequency_; }
 
   static constexpr std::size_t kMostRecipes = 255;  ///< of inputs
@@ -102,6 +107,7 @@ class RtdeSession {
   double frequency_;                  ///< Hz
   std::vector<std::size_t> outputs_;  ///< places in the list of fields
   bool has_outputs_ = false, is_refused_ = false, is_started_ = false;
+  bool wants_lockstep_ = false;
   std::vector<InputRecipe> inputs_;
 };
 

@@ -1,8 +1,11 @@
 // RemoteUr: the contract of plants on a served controller, and what robots do beside motions: stops, sliders, loads.
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "snug/cell/drawn_scenario.hpp"
 #include "snug/core/input_error.hpp"
@@ -40,7 +43,7 @@ model::ParcelId first_box() { return model::ParcelId("BOX027"); }
 /// The plant and the controller behind it.
 struct Cell {
   explicit Cell(const model::Scenario& served = scenario(), bool is_dry = false, ur::Model model = ur::Model::Ur10,
-                const model::Scenario& packed = scenario()) {
+                const model::Scenario& packed = scenario(), std::function<bool()> is_interrupted = {}) {
     auto owned = std::make_unique<SteppedLink>(served, "1", model);
     link = owned.get();
     RemoteUrOptions options;
@@ -51,6 +54,7 @@ struct Cell {
     options.is_in_time = false;
     options.part_patience = 2.0;
     options.is_dry = is_dry;
+    options.is_interrupted = std::move(is_interrupted);
     plant = std::make_unique<RemoteUr>(packed, "1", std::move(options));
   }
   [[nodiscard]] plant::Feedback go(std::vector<motion::Waypoint> waypoints, plant::Guards guards = {}) {
@@ -242,6 +246,128 @@ TEST(RemoteUr, ARobotThatIsGoneIsAFaultAndNothingFollows) {
   EXPECT_FALSE(cell.plant->bring(model::ParcelId(scenario().sequences.front().items[1].parcel)));
   EXPECT_EQ(cell.go(box().pick()).end.reason, EndReason::Refused);
   EXPECT_EQ(cell.plant->finish(), "the connection was closed");
+}
+
+/// A client dies with a box in the cup; the next one takes the outputs as they are and has the box that came before.
+TEST(RemoteUr, WhoComesAfterAnotherTakesOverWhatTheCupHolds) {
+  Cell cell;
+  ASSERT_TRUE(plant::bring_and_wait(*cell.plant, first_box()));
+  ASSERT_EQ(cell.go(box().pick()).end.reason, EndReason::Completed);
+  cell.plant->start({first_box(), {box().over(0.5, "home", true)}, {}, {}});
+  for (int i = 0; i < 30; ++i) (void)cell.plant->advance();
+  for (int i = 0; i < 40; ++i) cell.link->controller().step();  // nobody says a word
+  RemoteUrOptions options;
+  options.boxes = [&cell](std::vector<perception::SceneBox>& boxes) { return cell.link->look(boxes); };
+  options.link = std::make_unique<test::SameLink>(*cell.link);
+  options.perception = perception::make_perception(perception::Kind::Exact, 1);
+  options.motions.tracking = motion::FastTracking{};
+  options.is_in_time = false;
+  options.to_do = {first_box().value};
+  RemoteUr next(scenario(), "1", std::move(options));
+  EXPECT_TRUE(next.read().io.vacuum);
+  EXPECT_LT(next.read().pressure_gauge, -1e4);
+  ASSERT_EQ(plant::observe(next, {}).seen.size(), 1U) << "it came before";
+  const plant::Feedback up = plant::run(next, {first_box(), {box().over(0.3, "home", true)}, {}, {}});
+  ASSERT_EQ(up.end.reason, EndReason::Completed) << describe(up.end, {});
+  EXPECT_TRUE(up.io.vacuum);
+  EXPECT_GT(cell.data().payload, served_ur::UrArm(served_ur::test::demonstrator_cell()).tool_load().mass + 0.01);
+  EXPECT_EQ(plant::run(next, {first_box(), {box().over(0.06, "home", true), box().over(0.2, "home", false)}, {}, {}})
+                .end.reason,
+            EndReason::Completed);
+  const auto asked = cell.link->controller().data().digital_outputs;
+  ASSERT_TRUE(plant::bring_and_wait(next, first_box())) << "it has come already";
+  EXPECT_EQ(cell.link->controller().data().digital_outputs, asked) << "no other box is asked for";
+  EXPECT_EQ(plant::observe(next, {}).seen.size(), 1U);
+  EXPECT_TRUE(plant::bring_and_wait(next, model::ParcelId(scenario().sequences.front().items[1].parcel)));
+  EXPECT_EQ(next.finish(), "");
+}
+
+TEST(RemoteUr, WhoIsInterruptedWhileItWaitsForABoxIsTold) {
+  const model::Scenario wired = model::with_values(scenario(), {{"robot.io.next_part", "none"}}, "test");
+  bool is_interrupted = false;
+  Cell cell(wired, false, ur::Model::Ur10, wired, [&is_interrupted] { return is_interrupted; });
+  ASSERT_TRUE(plant::bring_and_wait(*cell.plant, first_box()));
+  ASSERT_TRUE(cell.plant->bring(model::ParcelId(scenario().sequences.front().items[1].parcel)));
+  is_interrupted = true;
+  const std::vector<plant::Event> events = cell.plant->advance();
+  ASSERT_EQ(events.size(), 1U);
+  ASSERT_NE(plant::get<plant::FaultRaised>(events[0]), nullptr);
+  EXPECT_EQ(plant::get<plant::FaultRaised>(events[0])->reason, EndReason::Cancelled);
+  EXPECT_EQ(cell.plant->finish(), "") << "the plant has not failed";
+}
+
+TEST(RemoteUr, InLockstepEachExchangeIsAPeriodAndTheClockWaits) {
+  const served_ur::test::Served served;
+  const Endpoint endpoint{"127.0.0.1", served.offset(), 20.0};
+  RobotCommand command;
+  std::vector<double> stamps;
+  {
+    RtdeLink link(endpoint, true);
+    for (int i = 0; i < 20; ++i) {
+      RobotSample sample;
+      command.count = i;
+      ASSERT_EQ(link.exchange(command, sample), "");
+      stamps.push_back(sample.timestamp);
+      if (i == 10) std::this_thread::sleep_for(std::chrono::milliseconds(40));
+    }
+  }
+  for (std::size_t i = 1; i < stamps.size(); ++i) EXPECT_NEAR(stamps[i] - stamps[i - 1], 0.008, 1e-9);
+  RtdeClient after(endpoint, {"timestamp"}, 0.0);
+  EXPECT_LT(after.receive().at("timestamp")[0], after.receive().at("timestamp")[0]) << "in time again";
+}
+
+/// What a controller says, on every connection.
+RtdeClient hear(const std::string& said, const std::vector<std::string>& outputs,
+                const std::vector<std::string>& inputs = {}) {
+  return RtdeClient(
+      [&said] {
+        std::array<int, 2> ends{};
+        EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()), 0);
+        EXPECT_EQ(::send(ends[1], said.data(), said.size(), MSG_NOSIGNAL), static_cast<ssize_t>(said.size()));
+        ::shutdown(ends[1], SHUT_WR);
+        static std::vector<Descriptor> kept;
+        kept.emplace_back(ends[1]);
+        return Connection(Descriptor(ends[0]), "controller", 1.0);
+      },
+      outputs, 0.0, inputs);
+}
+
+TEST(RemoteUr, ATypeThatAFieldCannotHaveIsRefused) {
+  using ur::rtde::Frame;
+  const auto frame = [](Frame type, const std::string& payload) { return ur::rtde::encode(type, payload); };
+  const std::string hello = frame(Frame::Version, "\x01") + frame(Frame::ControllerVersion, std::string(16, '\0'));
+  const std::string start = frame(Frame::Start, "\x01");
+  EXPECT_NO_THROW((void)hear(hello +
+                                 frame(Frame::Outputs,
+                                       "\x01"
+                                       "DOUBLE") +
+                                 start,
+                             {"timestamp"}));
+  EXPECT_THROW((void)hear(hello +
+                              frame(Frame::Outputs,
+                                    "\x01"
+                                    "UINT64") +
+                              start,
+                          {"timestamp"}),
+               InputError);
+  const std::string outputs = hello + frame(Frame::Outputs,
+                                            "\x01"
+                                            "DOUBLE");
+  const std::vector<std::string> number = {"input_double_register_24"};
+  EXPECT_NO_THROW((void)hear(outputs +
+                                 frame(Frame::Inputs,
+                                       "\x01"
+                                       "DOUBLE") +
+                                 start,
+                             {"timestamp"}, number));
+  EXPECT_THROW((void)hear(outputs +
+                              frame(Frame::Inputs,
+                                    "\x01"
+                                    "UINT8") +
+                              start,
+                          {"timestamp"}, number),
+               InputError)
+      << "a target would not fit into a byte";
 }
 
 TEST(RemoteUr, ABoxThatIsNotUsedMakesRoomForTheNext) {

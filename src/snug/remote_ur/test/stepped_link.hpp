@@ -111,4 +111,22 @@ class SteppedLink final : public RobotLink {
   served_ur::Controller controller_;
 };
 
+/// The controller of another link, for who connects after that one has gone.
+class SameLink final : public RobotLink {
+ public:
+  explicit SameLink(SteppedLink& link) : link_(link) {}
+  [[nodiscard]] std::string name() const override { return link_.name(); }
+  [[nodiscard]] double period() const override { return link_.period(); }
+  [[nodiscard]] bool is_e_series() const override { return link_.is_e_series(); }
+  [[nodiscard]] std::string exchange(const RobotCommand& command, RobotSample& sample) override {
+    return link_.exchange(command, sample);
+  }
+  [[nodiscard]] std::string start(const std::string& program) override { return link_.start(program); }
+  [[nodiscard]] std::string why_not() override { return link_.why_not(); }
+  [[nodiscard]] std::string unlock() override { return link_.unlock(); }
+
+ private:
+  SteppedLink& link_;
+};
+
 }  // namespace snug::remote_ur::test

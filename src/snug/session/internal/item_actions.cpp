@@ -332,11 +332,14 @@ Signal resume_item(Run& run) {
 
 Signal go_home(Run& run) {
   event::SessionEnded ended;
-  if (run.executor.has_moved()) {
+  const auto is_cancelled = [&run] {  // a plant that stops where it is when the session is interrupted
+    return run.stop == StopReason::Interrupted && run.executor.robot().end.reason == plant::EndReason::Cancelled;
+  };
+  if (run.executor.has_moved() && !is_cancelled()) {
     const std::vector<std::optional<Pose>> before = run.scene().believed_poses();
     move_home(run);
     if (run.executor.has_completed()) check_load(run, before);
-    if (!run.executor.has_completed()) {
+    if (!run.executor.has_completed() && !is_cancelled()) {
       ended.failure = SessionFailureKind::NotHome;
       ended.text = "on the way home: " + run.executor.describe_end();
     }

@@ -91,6 +91,12 @@ Signal leave_other(Run& run) {
   return Signal::LeaveOther;
 }
 
+StopReason stop_reason_of(Trouble trouble) {
+  return trouble == Trouble::PlantFault  ? StopReason::PlantFault
+         : trouble == Trouble::Cancelled ? StopReason::Interrupted
+                                         : StopReason::RobotStops;
+}
+
 Signal carry_out(Run& run, Remedy remedy) {
   ItemTask& task = run.agenda.top();
   RecoveryTask& recovery = task.recovery;
@@ -110,7 +116,7 @@ Signal carry_out(Run& run, Remedy remedy) {
       give_up(run, recovery.trouble);
       return recovered(run, Signal::Skip);
     case Remedy::Stop:
-      stop(run, recovery.trouble == Trouble::PlantFault ? StopReason::PlantFault : StopReason::RobotStops);
+      stop(run, stop_reason_of(recovery.trouble));
       give_up(run, recovery.trouble);
       return recovered(run, Signal::Stop);
     case Remedy::Resume:

@@ -75,6 +75,9 @@ void retreat(Run& run, model::ItemIndex item);
 void move_home(Run& run);
 /// A box to the aligner: held as it hangs for the plan of the item on top, or picked where it lies.
 void send_to_aligner(Run& run, model::ItemIndex item, bool may_hang_as_planned);
+/// The robot as the session before left it (SessionOptions::takes_over), brought to where an item can begin. Throws
+/// InputError where a box hangs from the cup that is not seen, or that cannot be put down.
+void take_over(Run& run);
 /// Where the culprit lies now is where it is to be from now on.
 void forget_displacement(Run& run);
 /// A trouble of the item on top and its remedy, said in the log.

@@ -81,11 +81,12 @@ TEST(RemedyTable, DoesNotGoOnForEver) {
   EXPECT_EQ(wrong, 0);
 }
 
-TEST(RemedyTable, EndsTheSessionForTheFourReasonsAloneThatSayThatItCannotGoOn) {
+TEST(RemedyTable, EndsTheSessionForTheFiveReasonsAloneThatSayThatItCannotGoOn) {
   int wrong = 0;
   for_every_situation([&](const Situation& at, Remedy remedy) {
     const bool must_stop =
-        at.trouble == Trouble::PlantFault || (at.trouble == Trouble::ProtectiveStop && at.stops > kRules.most_stops) ||
+        at.trouble == Trouble::PlantFault || at.trouble == Trouble::Cancelled ||
+        (at.trouble == Trouble::ProtectiveStop && at.stops > kRules.most_stops) ||
         ((at.trouble == Trouble::ViewBlocked || at.trouble == Trouble::NoFrame) && at.pictures >= kRules.most_pictures);
     wrong += (remedy == Remedy::Stop) == must_stop ? 0 : 1;
   });

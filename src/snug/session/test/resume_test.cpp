@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "snug/cell/drawn_scenario.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/session/session.hpp"
 #include "snug/session/test/scripted_plant.hpp"
@@ -70,6 +71,82 @@ TEST(Resume, ASessionThatIsKilledBeforeItsFirstItemIsDoneBeginsAnew) {
   ScriptedPlant plant;
   EXPECT_EQ(session::pack(two_boxes(), "1", options, plant).items.size(), 2U);
   EXPECT_EQ(plant.brought.size(), 2U);
+}
+
+/// The robot stands where the session before ended: with the second box in the cup, 0.2 m over the container.
+struct TakenOver {
+  TakenOver() {
+    options = quick_options();
+    options.resume = find_resume_point(killed_after<event::MotionStarted>(whole_log(), 2), "log");
+    options.takes_over = true;
+    const model::Scenario& scenario = two_boxes();
+    plant::Feedback& robot = plant.sensors();
+    robot.X_WE.p = model::find_container(scenario, scenario.target)->X_WT.p + Vector3(0.0, 0.0, 0.5);
+    robot.io.vacuum = true;
+    robot.pressure_gauge = -6.0e4;
+    const model::Parcel& parcel = *model::find_parcel(scenario, "BOX028");
+    const double half = 0.5 * model::collision_size(scenario, parcel).z();
+    hanging = Pose{Matrix3::Identity(), robot.X_WE * Vector3(0.0, 0.0, scenario.cup.hold_length + half)};
+    standing = cell::arrival_pose(scenario, scenario.sequences.front().items[1]);
+  }
+  ScriptedPlant plant;
+  SessionOptions options;
+  Pose hanging, standing;
+};
+
+TEST(Resume, ABoxThatHangsFromTheCupGoesToTheAlignerFirst) {
+  TakenOver cell;
+  EXPECT_EQ(cell.options.resume->to_do, std::vector{model::ItemIndex(1)});
+  cell.plant.visible["BOX028"] = cell.hanging;
+  cell.plant.happens = [&](int motion) {
+    if (motion == 1) cell.plant.visible["BOX028"] = cell.standing;
+    if (motion == 2) cell.plant.visible.erase("BOX028");  // as rehearsed
+  };
+  const SessionResult result = session::pack(two_boxes(), "1", cell.options, cell.plant);
+  ASSERT_GE(cell.plant.motions.size(), 2U);
+  const plant::Motion& first = cell.plant.motions.front();
+  EXPECT_EQ(first.item.value, "BOX028");
+  EXPECT_TRUE(first.waypoints.front().io.vacuum);
+  EXPECT_GE(first.waypoints.front().X_WE.p.z(), cell.plant.sensors().X_WE.p.z() - 1.0);
+  const auto let_go = std::ranges::find_if(first.waypoints, [](const auto& one) { return !one.io.vacuum; });
+  ASSERT_NE(let_go, first.waypoints.end());
+  EXPECT_LT((let_go->X_WE.p - cell.standing.p).head<2>().norm(), 0.15) << "beside the aligner's corner";
+  EXPECT_EQ(cell.plant.brought, std::vector<std::string>{"BOX028"});
+  ASSERT_EQ(result.items.size(), 2U);
+  EXPECT_TRUE(result.items[1].is_packed()) << result.items[1].reason;
+}
+
+TEST(Resume, ABoxInTheCupThatNobodySeesIsRefusedBeforeAnythingMoves) {
+  TakenOver cell;
+  EXPECT_THROW((void)session::pack(two_boxes(), "1", cell.options, cell.plant), InputError);
+  EXPECT_TRUE(cell.plant.motions.empty());
+}
+
+TEST(Resume, AToolThatHoldsNothingGoesStraightUpFirst) {
+  TakenOver cell;
+  cell.plant.sensors().io.vacuum = false;
+  cell.plant.sensors().pressure_gauge = 0.0;
+  const Pose before = cell.plant.sensors().X_WE;
+  (void)session::pack(two_boxes(), "1", cell.options, cell.plant);
+  ASSERT_FALSE(cell.plant.motions.empty());
+  const motion::Waypoint& up = cell.plant.motions.front().waypoints.back();
+  EXPECT_EQ(up.X_WE.p.head<2>(), before.p.head<2>());
+  EXPECT_GE(up.X_WE.p.z(), before.p.z());
+  TakenOver at_home;
+  at_home.plant.sensors() = ScriptedPlant().sensors();
+  (void)session::pack(two_boxes(), "1", at_home.options, at_home.plant);
+  EXPECT_NE(at_home.plant.motions.front().waypoints.back().variant, "_retreat") << "nothing to do";
+}
+
+TEST(Session, WhoIsInterruptedStaysWhereTheRobotWasStopped) {
+  ScriptedPlant plant;
+  plant.ends = {plant::EndReason::Cancelled};
+  const SessionResult result = session::pack(two_boxes(), "1", quick_options(), plant);
+  EXPECT_EQ(result.stop_reason, StopReason::Interrupted);
+  EXPECT_EQ(plant.home_count, 0);
+  EXPECT_FALSE(result.failure) << result.failure.text;
+  ASSERT_EQ(result.items.size(), 1U);
+  EXPECT_TRUE(has(result.items[0], Trouble::Cancelled, Remedy::Stop));
 }
 
 TEST(Resume, RefusesLogsThatNothingFollows) {

@@ -56,6 +56,9 @@ class ScriptedPlant : public plant::Plant {
   /// Motions that do not complete end on the way to the first waypoint of this class; else at the first with vacuum.
   std::optional<motion::MotionClass> ends_at;
 
+  /// What the sensors say before anything moves.
+  [[nodiscard]] plant::Feedback& sensors() { return now_; }
+
   [[nodiscard]] plant::Description describe() const override { return {"scripted", {}}; }
   [[nodiscard]] plant::Feedback read() override { return now_; }
   [[nodiscard]] bool is_moving() const override { return ending_.has_value(); }

@@ -10,7 +10,9 @@
 #include "snug/model/test/shortened.hpp"
 #include "snug/motion/program_csv.hpp"
 #include "snug/record/reader.hpp"
+#include "snug/runs/result_json.hpp"
 #include "snug/study/monte_carlo.hpp"
+#include "snug/study/witness.hpp"
 
 namespace snug::study {
 namespace {
@@ -70,6 +72,49 @@ TEST(Trial, IsTheSameRecordedAndItsRecordingHoldsWhatTheSessionSays) {
   for (const record::Event& event : events_of(recorded.session)) {
     EXPECT_NE(std::ranges::find(read.events, event), read.events.end()) << event.kind << " of " << event.body;
   }
+}
+
+/// As of a robot elsewhere: all that is known comes out of the plant's interface.
+TEST(Trial, ARecordingOfWhatThePlantSaysShowsWhatHappened) {
+  const model::Scenario scenario = shortened(2);
+  SessionOptions options = quick(0);
+  options.simulation.robot = "ur10";
+  SimulatedPlantOptions plant_options = plant_seed(7);
+  plant_options.simulation.robot = "ur10";
+  simulated_plant::SimulatedPlant plant(scenario, "1", plant_options);
+  const snug::test::ScratchFolder folder;
+  OutputFile file(folder / "run.h5");
+  TrialFiles files;
+  files.recording.emplace().file = &file;
+  files.describe = [](const runs::RunResult& one) { return runs::format_result(one); };
+  const Witness truth = truth_of(plant);
+  const Trial trial = run_trial(scenario, "1", options, plant, truth, {}, files);
+  ASSERT_EQ(trial.executed_boxes, 2);
+  const record::Recording read = record::load_recording(folder / "run.h5");
+  EXPECT_TRUE(read.is_complete);
+  ASSERT_GT(read.frames.size(), 1000U);
+  EXPECT_NEAR(read.frames.back().time, trial.session.duration, 0.02);
+  ASSERT_EQ(read.header.joints.size(), 6U);
+  const auto body_of = [&](const std::string& name) {
+    return std::ranges::find(read.header.bodies, name, &record::BodyInfo::name) - read.header.bodies.begin();
+  };
+  const record::Frame& last = read.frames.back();
+  for (std::size_t i = 0; i < truth.items.size(); ++i) {
+    const record::BodySample& box = last.bodies[static_cast<std::size_t>(body_of(truth.items[i]))];
+    ASSERT_TRUE(box.present);
+    EXPECT_LT((box.X_WB.p - truth.poses()[i]->p).norm(), 1e-3) << truth.items[i];
+  }
+  EXPECT_LT((last.X_WE.p - plant.read().X_WE.p).norm(), 1e-6);
+  const auto held = std::ranges::find_if(read.frames, [](const auto& one) { return one.cup.attached_body >= 0; });
+  ASSERT_NE(held, read.frames.end());
+  EXPECT_LT(held->cup.pressure_gauge, -1e4);
+  EXPECT_NEAR(held->cup.length, scenario.cup.hold_length, 1e-6);
+  for (const char* kind : {"appear", "seal", "release", "send"})
+    EXPECT_NE(std::ranges::find(read.events, kind, &record::Event::kind), read.events.end()) << kind;
+  EXPECT_NEAR(runs::read_result(read.result)->filling_degree_percent, trial.executed_percent, 1e-9);
+  motion::Program program = trial.session.program;
+  program.tracking = motion::FastTracking{};
+  EXPECT_EQ(read.header.program_text, motion::format_program(program));
 }
 
 TEST(Trial, PacksWithTheArm) {

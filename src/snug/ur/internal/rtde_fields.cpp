@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "snug/ur/rtde.hpp"
+
 namespace snug::ur::internal {
 namespace {
 
@@ -109,6 +111,7 @@ void add_states(Outputs& out) {
   out.signed_number("robot_mode", [](D d) { return static_cast<std::int32_t>(d.robot_mode); });
   out.signed_number("safety_mode", [](D d) { return static_cast<std::int32_t>(d.safety_mode); });
   out.signed_number("safety_status", [](D d) { return static_cast<std::int32_t>(d.safety_mode); });
+  out.add(rtde::kLockstep, "BOOL", [](D, ByteWriter& w) { w.boolean(true); });
   out.word("runtime_state", [](D d) { return static_cast<std::uint32_t>(d.runtime_state); });
   out.word("robot_status_bits", status_bits);
   out.word("safety_status_bits", safety_bits);
