@@ -9,6 +9,44 @@
 #include <numbers>
 
 namespace snug {
+namespace {
+
+constexpr int kPanel = 4;  // rows that are solved before what they bring to the others is summed
+
+/// x <- x - (sum over k of T(row, k) x(k)), k from `first` to `end` - 1, for column j of X.
+void subtract_known(const Matrix6& T, int row, int first, int end, int j, Matrix6& X) {
+  double sum = 0.0;
+  for (int k = first; k < end; ++k) sum += T(row, k) * X(k, j);
+  X(row, j) -= sum;
+}
+
+/// X <- L^-1 X, L the lower triangle with ones on its diagonal. Eigen's order of sums depends on the vectors that the
+/// processor has; here and below it is that of two doubles each.
+void solve_unit_lower(const Matrix6& L, Matrix6& X) {
+  for (int j = 0; j < 6; ++j) {
+    for (int k = 0; k < kPanel; ++k) {
+      for (int i = k + 1; i < kPanel; ++i) X(i, j) -= X(k, j) * L(i, k);
+    }
+    for (int i = kPanel; i < 6; ++i) subtract_known(L, i, 0, kPanel, j, X);
+    X(5, j) -= X(4, j) * L(5, 4);
+  }
+}
+
+/// X <- U^-1 X, U the upper triangle.
+void solve_upper(const Matrix6& U, Matrix6& X) {
+  for (int j = 0; j < 6; ++j) {
+    for (int k = 5; k >= 6 - kPanel; --k) {
+      X(k, j) *= 1.0 / U(k, k);
+      for (int i = 6 - kPanel; i < k; ++i) X(i, j) -= X(k, j) * U(i, k);
+    }
+    for (int i = 0; i < 6 - kPanel; ++i) subtract_known(U, i, 6 - kPanel, 6, j, X);
+    X(1, j) *= 1.0 / U(1, 1);
+    X(0, j) -= X(1, j) * U(0, 1);
+    X(0, j) *= 1.0 / U(0, 0);
+  }
+}
+
+}  // namespace
 
 Vector6 symmetric_eigenvalues(const Matrix6& M) noexcept {
   return Eigen::SelfAdjointEigenSolver<Matrix6>(M, Eigen::EigenvaluesOnly).eigenvalues();
@@ -23,7 +61,19 @@ double spectral_radius(const Matrix6& A, const Matrix6& B) noexcept {
 
 bool is_positive_definite(const Matrix6& M) noexcept { return Eigen::LLT<Matrix6>(M).info() == Eigen::Success; }
 
-Matrix6 inverse(const Matrix6& M) noexcept { return M.inverse(); }
+Matrix6 inverse(const Matrix6& M) noexcept {
+  const Eigen::PartialPivLU<Matrix6> lu(M);
+  Matrix6 X = lu.permutationP() * Matrix6::Identity();
+  solve_unit_lower(lu.matrixLU(), X);
+  solve_upper(lu.matrixLU(), X);
+  return X;
+}
+
+Matrix6 upper_inverse(const Matrix6& U) noexcept {
+  Matrix6 X = Matrix6::Identity();
+  solve_upper(U, X);
+  return X;
+}
 
 Vector6 solve(const Matrix6& M, const Vector6& b) noexcept { return M.partialPivLu().solve(b); }
 

@@ -16,6 +16,8 @@ namespace snug {
 [[nodiscard]] bool is_positive_definite(const Matrix6& M) noexcept;
 /// By LU with partial pivoting; of a singular matrix numbers that are not finite.
 [[nodiscard]] Matrix6 inverse(const Matrix6& M) noexcept;
+/// Of the upper triangle of U, the same at any processor.
+[[nodiscard]] Matrix6 upper_inverse(const Matrix6& U) noexcept;
 /// x of M x = b, as `inverse`.
 [[nodiscard]] Vector6 solve(const Matrix6& M, const Vector6& b) noexcept;
 /// x of M x = b by LDL^T, of M, symmetric and semidefinite: its lower half is read.

@@ -1,13 +1,13 @@
 // BlockSolver: direct solution of sparse linear systems in 6 x 6 blocks of bodies.
 #include "snug/physics/internal/block_solver.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <new>
 
 #include "snug/physics/internal/contact_row.hpp"
 #include "snug/physics/internal/panel_kernels.hpp"
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::physics::internal {
 namespace {
@@ -47,7 +47,7 @@ Matrix6 invert(const BlockView& block) {
 #pragma GCC unroll 6
   for (int k = 0; k < 6; ++k) {
     const double pivot = m[k][k / 2][k % 2];
-    if (!(std::abs(pivot) > 0.5)) return Matrix6(block).inverse();
+    if (!(std::abs(pivot) > 0.5)) return snug::inverse(Matrix6(block));
     const double scale = 1.0 / pivot;
     m[k][k / 2][k % 2] = 1.0;
     for (Pair& part : m[k]) part *= Pair{scale, scale};

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "snug/physics/internal/scratch.hpp"
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::physics::internal {
 namespace {
@@ -108,8 +109,7 @@ void linearize_body(const WorldModel& model, const WorldInput& input, Scratch& w
   const Vector6 free = cholesky.solve(momentum);
   Whitening& whitening = work.whitening[static_cast<std::size_t>(b.active)];
   whitening.is_dense = true;
-  const Matrix6 upper = cholesky.matrixU();
-  whitening.dense = upper.triangularView<Eigen::Upper>().solve(Matrix6::Identity());
+  whitening.dense = upper_inverse(cholesky.matrixU());
   Eigen::Map<Vector6>(work.u.data() + 6 * b.active) = whiten(whitening, free.head<3>(), free.tail<3>());
 }
 

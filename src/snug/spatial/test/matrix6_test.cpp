@@ -19,6 +19,8 @@ TEST(Matrix6, InversesAndSolutionsAreWhatTheySay) {
     const Vector6 b = Vector6::NullaryExpr([&] { return rng.normal(); });
     const double size = inverse(M).norm() * M.norm();
     EXPECT_LT((M * inverse(M) - Matrix6::Identity()).norm(), 1e-13 * size);
+    const Matrix6 U = M.triangularView<Eigen::Upper>();
+    EXPECT_LT((U * upper_inverse(M) - Matrix6::Identity()).norm(), 1e-13 * upper_inverse(M).norm() * U.norm());
     EXPECT_LT((M * solve(M, b) - b).norm(), 1e-13 * size);
     const Matrix6 S = M * M.transpose();
     EXPECT_LT((S * solve_symmetric(S, b) - b).norm(), 1e-13 * size * size);
