@@ -79,7 +79,7 @@ class Made(unittest.TestCase):
 
     def test_every_block_has_its_maker(self):
         named = {match[2] for path in figures.documents() for match in figures.BLOCK.finditer(path.read_text(encoding="utf-8"))}
-        self.assertEqual(named, {"first-run", "sessions", "sessions-by-sequence", "sessions-by-plant", "acceptance"})
+        self.assertEqual(named, {"first-run", "sessions", "sessions-by-sequence", "sessions-by-plant", "acceptance", "ur", "ur-frames"})
 
     def test_a_name_that_is_none_is_refused(self):
         done = subprocess.run([sys.executable, ROOT / "tools" / "figures.py", "session"], capture_output=True, text=True, check=False)
