@@ -53,8 +53,8 @@ class ReportForm(unittest.TestCase):
         cell = self.path / "cell.yaml"
         text = CELL.read_text(encoding="utf-8").replace("urdf: robots/", f"urdf: {CELL.parent}/robots/")
         cell.write_text(text.replace("\nsequences:\n", f"\nsequences:\n  - name: three\n    items:\n{items}", 1), encoding="utf-8")
-        words = ("--sequence", "three", "--robot", "none")
-        self.run_snug("pack", cell, *words, "--plant-seed", 0, "--samples", 0, "--decision-time", 0.2, "--program", self.path / "program.csv")
+        words = ("--sequence", "three")
+        self.run_snug("pack", cell, *words, "--robot", "none", "--plant-seed", 0, "--samples", 0, "--decision-time", 0.2, "--program", self.path / "program.csv")
         words = ("simulate", cell, "--program", self.path / "program.csv", "--controller", "fast", *words)
         self.run_snug(*words, "-o", self.path / "simulated.h5")
         self.run_snug(*words, "--set", "cup.stiffness.lateral=1900", "--set", "cup.stiffness.bend=3.5", "--set", "contacts.pairs.box/container.friction=0.35",
@@ -68,6 +68,9 @@ class ReportForm(unittest.TestCase):
                 for name, (key, unit) in UNITS.items():
                     with self.subTest(when_lost=when_lost, body=body, error=name):
                         found, expected = said[body][key]["mean"], unit * port[name]
+                        if found is None:
+                            self.assertEqual((body, name[:4]), ("BOX017", "rest"))  # the run ends before it rests
+                            continue
                         self.assertLess(abs(found - expected), 0.01 * expected, f"{found} of {expected}")
 
 

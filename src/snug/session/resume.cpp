@@ -81,7 +81,9 @@ ResumePoint find_resume_point(const EventLog& log, const std::string& name) {
   }
   point.events.assign(all.begin(), end);
   for (const SessionEvent& one : all) {
-    if (const auto* brought = std::get_if<event::ItemBrought>(&one)) point.to_do.push_back(brought->item);
+    const auto* brought = std::get_if<event::ItemBrought>(&one);
+    if (brought != nullptr && std::ranges::find(point.to_do, brought->item) == point.to_do.end())
+      point.to_do.push_back(brought->item);
   }
   for (const SessionEvent& one : point.events) {
     if (const auto* ended = std::get_if<event::ItemEnded>(&one)) std::erase(point.to_do, ended->item);

@@ -190,7 +190,8 @@ TEST(RemoteUr, AProgramThatStartsBeforeItsFirstCommandHoldsStill) {
     EXPECT_EQ(sample.script, script_word(number, ScriptState::Follows));
     command.mode = RobotCommand::Mode::Ends;
     for (auto& q : command.q) q[0] += 1.0;
-    ASSERT_EQ(link.exchange(command, sample), "");
+    for (int i = 0; i < 100 && sample.script != script_word(number, ScriptState::Ended); ++i)  // it brakes first
+      ASSERT_EQ(link.exchange(command, sample), "");
     EXPECT_EQ(sample.script, script_word(number, ScriptState::Ended));
   }
 }
@@ -289,7 +290,8 @@ TEST(RemoteUr, WhoIsInterruptedWhileItWaitsForABoxIsTold) {
   ASSERT_TRUE(plant::bring_and_wait(*cell.plant, first_box()));
   ASSERT_TRUE(cell.plant->bring(model::ParcelId(scenario().sequences.front().items[1].parcel)));
   is_interrupted = true;
-  const std::vector<plant::Event> events = cell.plant->advance();
+  std::vector<plant::Event> events;
+  for (int i = 0; i < 5 && events.empty(); ++i) events = cell.plant->advance();
   ASSERT_EQ(events.size(), 1U);
   ASSERT_NE(plant::get<plant::FaultRaised>(events[0]), nullptr);
   EXPECT_EQ(plant::get<plant::FaultRaised>(events[0])->reason, EndReason::Cancelled);
@@ -313,7 +315,8 @@ TEST(RemoteUr, InLockstepEachExchangeIsAPeriodAndTheClockWaits) {
   }
   for (std::size_t i = 1; i < stamps.size(); ++i) EXPECT_NEAR(stamps[i] - stamps[i - 1], 0.008, 1e-9);
   RtdeClient after(endpoint, {"timestamp"}, 0.0);
-  EXPECT_LT(after.receive().at("timestamp")[0], after.receive().at("timestamp")[0]) << "in time again";
+  const double first = after.receive().at("timestamp")[0];
+  EXPECT_LT(first, after.receive().at("timestamp")[0]) << "in time again";
 }
 
 /// What a controller says, on every connection.

@@ -161,6 +161,8 @@ void send_to_aligner(Run& run, model::ItemIndex item, bool may_hang_as_planned) 
 
 void take_over(Run& run) {
   run.executor.refresh();
+  for (const model::ItemIndex item : run.options.resume->to_do)  // whoever resumes this session, too, has to know
+    run.log(event::ItemBrought{run.executor.time(), item, false});
   constexpr double kAtStart = 0.02;  // m
   const Pose& X_WE_start = run.belief.now().scenario.controller.X_WE_start;
   const bool is_at_start = (run.executor.robot().X_WE.p - X_WE_start.p).norm() < kAtStart;
