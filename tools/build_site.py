@@ -3,7 +3,6 @@
 
 Copies the Markdown files of the tree, what they link to and their pictures into a folder of its own and runs Debian's Sphinx with
 MyST on it (packages python3-sphinx, python3-myst-parser, furo). A warning of Sphinx, such as a link that leads nowhere, fails.
-Report pages that `make demo` has left in out/ go into the gallery.
 """
 import re
 import shutil
@@ -48,17 +47,6 @@ def version():
     return re.search(r"project\(snug[^)]*VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text(), re.S).group(1)
 
 
-def add_report_pages(source, out):
-    """The pictures of the gallery lead to the pages of the runs, where there are any."""
-    gallery = source / "docs" / "gallery.md"
-    text = gallery.read_text()
-    for page in sorted((ROOT / "out").glob("sequence-*.html")):
-        (out / "runs").mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(page, out / "runs" / page.name)
-        text = re.sub(rf"!\[[^]]*\]\(img/{page.stem}\.png\)", rf'<a href="../runs/{page.name}">\g<0></a>', text)
-    gallery.write_text(text)
-
-
 def mend_theme(static):
     """Debian's furo imports a style from the root of a web server, and a script as a module: neither is found from disk."""
     style = static / "styles" / "furo.css"
@@ -83,7 +71,6 @@ def main(arguments):
             for file in (page, *linked_files(page)):
                 copy(file, source)
         shutil.copyfile(ROOT / "docs" / "site" / "conf.py", source / "conf.py")
-        add_report_pages(source, out)
         words = [SPHINX, "-q", "-W", "--keep-going", "-b", "html", "-d", str(Path(name) / "doctrees"), str(source), str(out)]
         result = subprocess.run(words, check=False, env={"PATH": "/usr/bin:/bin", "LC_ALL": "C.UTF-8", "SNUG_SITE_VERSION": version()})
         if result.returncode != 0:

@@ -3,7 +3,7 @@
 
   pictures.py [NAME ...]     all of them, some minutes; needs Debian's chromium
 
-Names: report, kitchen, validation, packed-sequence-2; sequence-1 to sequence-5 of what `make demo` has left in out/."""
+Names: report, kitchen, validation, packed-sequence-2."""
 import argparse
 import os
 import subprocess
@@ -67,18 +67,7 @@ def packed_sequence_2(folder, picture):
     snug(folder, "picture", recording(folder, "second"), "--camera", "top", "--size", "700x520", "-o", picture)
 
 
-def gallery(sequence):
-    """From above, as `make demo` has packed it."""
-    def draw(folder, picture):
-        run = ROOT / "out" / f"sequence-{sequence}.h5"
-        if not run.exists():
-            raise SystemExit(f"pictures.py: no {run.relative_to(ROOT)}: run `make demo` first")
-        snug(folder, "picture", run, "--camera", "top", "--size", "560x420", "-o", picture)
-    return draw
-
-
-PICTURES = {"report": report, "kitchen": kitchen, "validation": validation, "packed-sequence-2": packed_sequence_2,
-            **{f"sequence-{n}": gallery(n) for n in range(1, 6)}}
+PICTURES = {"report": report, "kitchen": kitchen, "validation": validation, "packed-sequence-2": packed_sequence_2}
 
 
 def main():
