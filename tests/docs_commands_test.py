@@ -191,7 +191,7 @@ class Commands(unittest.TestCase):
         for path in documents():
             lines = list(commands_of(path.read_text(encoding="utf-8"), True))
             count += self.run_all(lines, known)
-            known |= {line for line in lines if not line.startswith("snug serve")}
+            known |= {line for line in lines if "127.0.0.1" not in line}  # what a server says depends on the one before
         self.assertGreater(count, 20)
 
     def test_of_help(self):

@@ -102,6 +102,7 @@ struct Columns {
   std::vector<double> times;
   std::array<std::vector<double>, 6> values;  ///< position, rotation vector
   std::vector<bool> is_held;                  ///< the same as before to the last bit: not measured anew
+  double last_seen = 0.0;                     ///< s
 };
 
 /// The demonstrator's cleaning, which sees the window alone: outliers and constant runs are taken away, gaps filled,
@@ -116,7 +117,10 @@ Columns cleaned_as_reported(const Measurement& measurement, std::size_t body, co
     const PoseSample& X_WB = measurement.bodies[body][i];
     columns.is_held.push_back(is_tracked(X_WB) && X_WB == before);
     before = X_WB;
-    if (is_tracked(X_WB)) w = nearest_log(X_WB.pose().R, w);
+    if (is_tracked(X_WB)) {
+      w = nearest_log(X_WB.pose().R, w);
+      columns.last_seen = columns.times.back();
+    }
     for (int k = 0; k < 3; ++k) {
       columns.values[static_cast<std::size_t>(k)].push_back(is_tracked(X_WB) ? X_WB.p[k] : kNaN);
       columns.values[static_cast<std::size_t>(3 + k)].push_back(is_tracked(X_WB) ? w[k] : kNaN);
@@ -155,7 +159,7 @@ void compare_poses_as_reported(const SimulatedRun& run, const Measurement& measu
   const Columns columns = cleaned_as_reported(measurement, body, window);
   const auto [first, last] = span_of(run.times, window.start, window.end);
   std::vector<double> positions, rotations;
-  double compared = 0.0, dropped = 0.0, last_time = window.start;
+  double compared = 0.0, dropped = 0.0, position = kNaN, rotation = kNaN;
   Vector3 w_simulated = Vector3::Zero();
   for (std::size_t i = first; i < last; ++i) {
     const PoseSample& X_WB = run.bodies[body][i];
@@ -175,9 +179,9 @@ void compare_poses_as_reported(const SimulatedRun& run, const Measurement& measu
         if ((other - w_simulated).norm() < (w - w_simulated).norm()) w = other;
       }
     }
-    const double position = (p - X_WB.p).norm(), rotation = (w - w_simulated).norm();
+    position = (p - X_WB.p).norm();
+    rotation = (w - w_simulated).norm();
     compared += 2.0;
-    last_time = run.times[i];
     dropped += (position > kPositionOutlier ? 1.0 : 0.0) + (rotation > kRotationOutlier ? 1.0 : 0.0);
     positions.push_back(position > kPositionOutlier ? kNaN : position);
     rotations.push_back(rotation > kRotationOutlier ? kNaN : rotation);
@@ -185,9 +189,9 @@ void compare_poses_as_reported(const SimulatedRun& run, const Measurement& measu
   errors.dropped = compared > 0.0 ? dropped / compared : 0.0;
   errors.rms_position = root_mean_square(positions);
   errors.rms_rotation = root_mean_square(rotations);
-  if (!positions.empty() && last_time > window.end - kRestSpan) {  // else it was lost before it rested
-    errors.rest_position = positions.back();
-    errors.rest_rotation = rotations.back();
+  if (columns.last_seen > window.end - kRestSpan) {  // else it was lost before it rested
+    errors.rest_position = position;                 // the last sample that is left, however far off
+    errors.rest_rotation = rotation;
   }
 }
 
