@@ -1,7 +1,8 @@
-// Files of measurements that are read from disk: frames of cameras (PNG, PLY, HDF5), archives (HDF5) and logs of
-// controllers and windows of comparison (CSV), by the first byte.
+// Files of measurements that are read from disk: frames of cameras (PNG, PLY, PCD, HDF5) and what is said beside them,
+// archives (HDF5) and logs of controllers and windows of comparison (CSV), by the first byte.
 #include "fuzz.hpp"
 #include "scratch_file.hpp"
+#include "snug/camera/camera_file.hpp"
 #include "snug/camera/frame_file.hpp"
 #include "snug/record/archive.hpp"
 #include "snug/validation/log_table.hpp"
@@ -34,6 +35,9 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
       }
       case 'l':
         (void)validation::load_log(file.path());
+        break;
+      case 'b':
+        (void)camera::parse_camera_file(bytes, "x.yaml");
         break;
       default: {
         camera::FrameHints hints;

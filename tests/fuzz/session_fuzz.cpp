@@ -1,5 +1,6 @@
-// What sessions and studies leave and take again: logs of events, beliefs, results, inputs of rows, faults, profiles of
-// shaking, keys with values, and the robot's description as a recording holds it, by the first byte.
+// What sessions and studies leave and take again: logs of events, beliefs, results, inputs of rows, faults, orders of
+// operators, profiles of shaking, keys with values, and the robot's description as a recording holds it, by the first
+// byte.
 #include "fuzz.hpp"
 #include "snug/model/scenario_edit.hpp"
 #include "snug/planning/belief_json.hpp"
@@ -8,6 +9,7 @@
 #include "snug/robot/visuals.hpp"
 #include "snug/runs/result_json.hpp"
 #include "snug/runs/shake_profile.hpp"
+#include "snug/session/operator.hpp"
 #include "snug/session/resume.hpp"
 #include "snug/simulated_plant/faults.hpp"
 #include "snug/study/inputs.hpp"
@@ -29,6 +31,13 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
       case 'f':
         (void)simulated_plant::parse_faults(text);
         break;
+      case 'o': {
+        const auto order = session::parse_operator_order(text, "x.txt", 1);
+        if (order)
+          SNUG_CHECK(session::parse_operator_order(session::format_operator_order(*order), "x.txt", 1) == order,
+                     "an order is read as written");
+        break;
+      }
       case 's':
         (void)runs::parse_shake_profile(text, "x.csv");
         break;
