@@ -69,15 +69,19 @@ void advance_program(const PreparedProgram& plan, const ToolState& measured, Con
     if (state.phase_ticks >= ticks_of(plan.settings.vacuum_wait, plan.settings.tick)) begin_motion(plan, state);
   } else if (state.phase == ControllerPhase::Moving && has_reached_row(plan, measured, state)) {
     output.reached = state.row;
-    if (state.row + 1 < static_cast<int>(plan.program.waypoints.size())) {
+    const bool is_last = state.row + 1 == static_cast<int>(plan.program.waypoints.size());
+    if (is_last || is_too_early(plan, state, state.row + 1)) {
+      state.phase = is_last ? ControllerPhase::Finished : ControllerPhase::Standing;
+      state.phase_ticks = 0;
+      state.X_WE_reference = plan.X_WE[static_cast<std::size_t>(state.row)];
+      output.finished_now = is_last;
+    } else {
       depart(plan, state.row + 1, X_WE, state);
       output.departed = state.row;
-    } else {
-      state.phase = ControllerPhase::Finished;
-      state.phase_ticks = 0;
-      state.X_WE_reference = plan.X_WE.back();
-      output.finished_now = true;
     }
+  } else if (state.phase == ControllerPhase::Standing && !is_too_early(plan, state, state.row + 1)) {
+    depart(plan, state.row + 1, X_WE, state);
+    output.departed = state.row;
   }
 }
 
@@ -181,6 +185,11 @@ ControllerOutput tick(const PreparedProgram& plan, const ToolState& measured, Co
 bool will_finish(const PreparedProgram& plan, const ToolState& measured, const ControllerState& state) noexcept {
   return state.phase == ControllerPhase::Moving && state.row + 1 == static_cast<int>(plan.program.waypoints.size()) &&
          has_reached_row(plan, measured, state);
+}
+
+bool is_too_early(const PreparedProgram& plan, const ControllerState& state, int row) noexcept {
+  const std::optional<double>& not_before = plan.program.waypoints[static_cast<std::size_t>(row)].not_before;
+  return not_before && (static_cast<double>(state.tick_count) + 0.5) * plan.settings.tick <= *not_before;
 }
 
 double convergence_error(const Pose& X_WE, const Pose& X_WE_target, double convergence_deg_per_metre) noexcept {

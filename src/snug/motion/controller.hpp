@@ -16,7 +16,7 @@
 namespace snug::motion {
 
 /// A program under way for longer than this does not end, s.
-inline constexpr double kLongestProgram = 7200.0;
+inline constexpr double kLongestProgram = kLatestDeparture;
 /// What boxes that still move are given after the last waypoint, s.
 inline constexpr double kSettleTime = 1.0;
 
@@ -45,7 +45,13 @@ struct PreparedProgram {
 /// Throws InputError for an unknown waypoint name, an empty program, and settings or limits out of range.
 [[nodiscard]] PreparedProgram prepare(Program program, ControllerSettings settings);
 
-enum class ControllerPhase { Ready, Waiting, Moving, Finished };
+enum class ControllerPhase {
+  Ready,
+  Waiting,   ///< for the vacuum, before it moves to the waypoint aimed at
+  Moving,    ///< to it
+  Standing,  ///< at it, until the next may begin (Waypoint::not_before)
+  Finished,
+};
 
 /// All that changes from tick to tick. Copying it is a snapshot.
 struct ControllerState {
@@ -95,6 +101,9 @@ struct ControllerOutput {
 /// |position error| + angle / (convergence_deg_per_metre), m: what is compared with a row's precision.
 [[nodiscard]] double convergence_error(const Pose& X_WE, const Pose& X_WE_target,
                                        double convergence_deg_per_metre) noexcept;
+
+/// Whether the row may not begin yet.
+[[nodiscard]] bool is_too_early(const PreparedProgram& plan, const ControllerState& state, int row) noexcept;
 
 /// Duration of a program without any physics, the tool following exactly, s. Stops at `longest` seconds.
 [[nodiscard]] double compute_duration(const PreparedProgram& plan, const Pose& X_WE_start, double longest = 3600.0);

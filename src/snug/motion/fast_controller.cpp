@@ -121,6 +121,7 @@ double blend_at(const PreparedProgram& plan, const ControllerState& state) {
   if (!has_next(plan, state.row)) return 0.0;
   if (is_contact_row(plan, state.row)) return 0.0;
   const Waypoint &waypoint = row_of(plan, state.row), &after = row_of(plan, state.row + 1);
+  if (after.not_before) return 0.0;
   if (waypoint.io != after.io && (!is_detaching(waypoint) || has_to_wait(waypoint.io, after.io))) return 0.0;
   const Pose &row = pose_of(plan, state.row), &next = pose_of(plan, state.row + 1);
   const double degrees = plan.settings.convergence_deg_per_metre;
@@ -249,15 +250,19 @@ void advance_fast(const PreparedProgram& plan, const ToolState& measured, Contro
   } else if (state.phase == ControllerPhase::Moving && has_reached_fast(plan, measured, state)) {
     output.reached = state.row;
     state.was_felt = feels_contact(plan, state);
-    if (has_next(plan, state.row)) {
-      depart(plan, state.row + 1, state);
-      output.departed = state.row;
-    } else {
-      state.phase = ControllerPhase::Finished;
+    const bool is_last = !has_next(plan, state.row);
+    if (is_last || is_too_early(plan, state, state.row + 1)) {
+      state.phase = is_last ? ControllerPhase::Finished : ControllerPhase::Standing;
       state.phase_ticks = 0;
       state.command.V_WE = {};
-      output.finished_now = true;
+      output.finished_now = is_last;
+    } else {
+      depart(plan, state.row + 1, state);
+      output.departed = state.row;
     }
+  } else if (state.phase == ControllerPhase::Standing && !is_too_early(plan, state, state.row + 1)) {
+    depart(plan, state.row + 1, state);
+    output.departed = state.row;
   }
 }
 

@@ -29,6 +29,7 @@ constexpr double kLargestPosition = 100.0;       // m; a cell is a few metres, s
 constexpr std::size_t kMostWaypoints = 100'000;  // hours of motion
 constexpr double kLargestRotation = 100.0;       // rad; far beyond any sensible rotation vector, still exact to 1e-14
 
+constexpr const char* kInstantEnding = "behind the last '@' seconds from 0 to 7200, such as @7.512";
 constexpr const char* kSwingEnding = "behind '~' a swing: two periods from 0.01 to 9.99 s, such as ~0.42+0.31";
 
 /// Where a field stands, for messages.
@@ -94,6 +95,7 @@ Waypoint parse_row(std::string_view text, std::string_view file, int line) {
   }
   Waypoint waypoint = parse_waypoint_name(read_name(field(6)));
   if (has_malformed_swing(waypoint)) field(6).fail(kSwingEnding);
+  if (has_malformed_instant(waypoint)) field(6).fail(kInstantEnding);
   waypoint.X_WE = {exp_rotation({number[3], number[4], number[5]}), {number[0], number[1], number[2]}};
   waypoint.io = {parse_switch(field(7)),  parse_switch(field(8)),  parse_switch(field(9)),
                  parse_switch(field(10)), parse_switch(field(11)), parse_switch(field(12))};
@@ -172,8 +174,10 @@ void check_writable(const Program& program, std::size_t row) {
     throw InputError(place_of(program, row), "column 7 (name)", fmt::format("'{}'", name),
                      "a name without commas, control characters and blanks at its ends");
   }
-  if (has_malformed_swing(parse_waypoint_name(name))) {
-    throw InputError(place_of(program, row), "column 7 (name)", fmt::format("'{}'", name), kSwingEnding);
+  const Waypoint read = parse_waypoint_name(name);
+  if (has_malformed_swing(read) || has_malformed_instant(read)) {
+    throw InputError(place_of(program, row), "column 7 (name)", fmt::format("'{}'", name),
+                     has_malformed_swing(read) ? kSwingEnding : kInstantEnding);
   }
   if (!waypoint.X_WE.p.allFinite() || !waypoint.X_WE.R.allFinite()) {
     throw InputError(place_of(program, row), name, "a pose that is not finite", "a finite pose");

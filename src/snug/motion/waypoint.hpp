@@ -54,6 +54,9 @@ struct Swing {
   bool operator==(const Swing&) const = default;
 };
 
+/// The latest instant that a waypoint may wait for, s.
+inline constexpr double kLatestDeparture = 7200.0;
+
 struct Waypoint {
   Pose X_WE;  ///< tool frame E (gripper end, z toward the package)
   MotionClass motion_class = MotionClass::Other;
@@ -63,6 +66,9 @@ struct Waypoint {
   /// Of the box that hangs on the way to it. Fast motions leave nothing of these swings: they are averaged over the
   /// slow one, and half of them comes half the fast one later (straight down to its place: half the slow one).
   std::optional<Swing> swing;
+  /// s since the program's start: the tool stands at the waypoint before until then. 0.001 to kLatestDeparture; a file
+  /// keeps milliseconds.
+  std::optional<double> not_before;
   IO io;
   int line = 0;  ///< in the file it was read from, from 1; 0: made by the program itself
 

@@ -42,16 +42,43 @@ bool is_period(double value) noexcept { return value >= 0.01 && value < 9.995; }
 
 bool is_pace(double value) noexcept { return value >= 0.01 && value <= 1.0; }
 
+double rounded(double exact, int decimals) {
+  const std::string text = fmt::format("{:.{}f}", exact, decimals);
+  double value = 0.0;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
 std::string text_of(const Swing& swing) {
   const std::string pace = swing.pace < 1.0 ? fmt::format("*{:.2f}", swing.pace) : "";
   return fmt::format("~{:.2f}+{:.2f}{}", swing.slow, swing.fast, pace);
 }
+
+std::string text_of(double not_before) { return fmt::format("@{:.3f}", not_before); }
 
 /// What stands behind class and item.
 struct Tail {
   std::string variant;
   std::optional<Swing> swing;
 };
+
+/// The number behind the last '@' of a text, if that is all that stands there.
+std::optional<double> number_behind_at(std::string_view text) {
+  const std::size_t mark = text.rfind('@');
+  if (mark == std::string_view::npos) return std::nullopt;
+  double value = 0.0;
+  const auto last = std::from_chars(text.data() + mark + 1, text.data() + text.size(), value);
+  if (last.ec == std::errc::invalid_argument || last.ptr != text.data() + text.size()) return std::nullopt;
+  return last.ec == std::errc() ? value : kLatestDeparture * 2.0;  // what no number can hold is too late
+}
+
+/// Takes an instant from the text's end.
+std::optional<double> take_instant(std::string_view& text) {
+  const std::optional<double> number = number_behind_at(text);
+  if (!number || !(*number >= 0.0 && *number <= kLatestDeparture)) return std::nullopt;
+  text = text.substr(0, text.rfind('@'));
+  return as_named(*number);
+}
 
 Tail parse_tail(std::string_view text) {
   Tail tail{std::string(text), std::nullopt};
@@ -116,12 +143,14 @@ bool is_contact(MotionClass motion_class) noexcept {
 
 std::string name_of(const Waypoint& waypoint) {
   const bool has_id = waypoint.item_is_id && !waypoint.item.empty();
-  return fmt::format("{}{}{}{}{}{}", name_of(waypoint.motion_class), has_id ? "(" : "", waypoint.item,
-                     has_id ? ")" : "", waypoint.variant, waypoint.swing ? text_of(*waypoint.swing) : "");
+  return fmt::format("{}{}{}{}{}{}{}", name_of(waypoint.motion_class), has_id ? "(" : "", waypoint.item,
+                     has_id ? ")" : "", waypoint.variant, waypoint.swing ? text_of(*waypoint.swing) : "",
+                     waypoint.not_before ? text_of(*waypoint.not_before) : "");
 }
 
 Waypoint parse_waypoint_name(std::string_view name) {
   Waypoint waypoint;
+  waypoint.not_before = take_instant(name);
   waypoint.motion_class = class_of(name);
   std::string_view rest = name.substr(name_of(waypoint.motion_class).size());
   const bool is_for_item = waypoint.motion_class != MotionClass::Other && waypoint.motion_class != MotionClass::Home;
@@ -146,6 +175,10 @@ bool has_malformed_swing(const Waypoint& waypoint) {
   return false;
 }
 
+bool has_malformed_instant(const Waypoint& waypoint) {
+  return number_behind_at(waypoint.item_is_id ? waypoint.variant : waypoint.item).has_value();
+}
+
 Waypoint named_waypoint(std::string_view name, const Pose& X_WE, const IO& io) {
   Waypoint waypoint = parse_waypoint_name(name);
   waypoint.X_WE = X_WE;
@@ -156,13 +189,13 @@ Waypoint named_waypoint(std::string_view name, const Pose& X_WE, const IO& io) {
 Swing as_named(const Swing& swing) {
   SNUG_CHECK(is_period(swing.slow) && is_period(swing.fast), "periods of a swing");
   SNUG_CHECK(is_pace(swing.pace), "pace of a swing");
-  const auto rounded = [](double exact) {
-    const std::string text = fmt::format("{:.2f}", exact);
-    double value = 0.0;
-    std::from_chars(text.data(), text.data() + text.size(), value);
-    return value;
-  };
-  return {rounded(swing.slow), rounded(swing.fast), rounded(swing.pace)};
+  return {rounded(swing.slow, 2), rounded(swing.fast, 2), rounded(swing.pace, 2)};
+}
+
+std::optional<double> as_named(double time) {
+  SNUG_CHECK(time >= 0.0 && time <= kLatestDeparture, "an instant of a program");
+  const double whole = rounded(time, 3);
+  return whole > 0.0 ? std::optional(whole) : std::nullopt;
 }
 
 std::size_t fit_of(const Waypoint& waypoint, std::string_view id) noexcept {

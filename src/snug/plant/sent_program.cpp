@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "snug/motion/program_csv.hpp"
+#include "snug/motion/waypoint_name.hpp"
 
 namespace snug::plant {
 
@@ -13,8 +14,12 @@ SentProgram::SentProgram(Plant& plant, OutputFile& file, const motion::Tracking&
 void SentProgram::start(const Motion& motion) {
   const bool is_finite = std::ranges::all_of(
       motion.waypoints, [](const motion::Waypoint& one) { return one.X_WE.p.allFinite() && one.X_WE.R.allFinite(); });
-  if (is_finite) {  // else it is refused
+  if (is_finite && !motion.waypoints.empty()) {  // else it is refused
+    const double now = plant_.read().time;
+    if (program_.waypoints.empty()) begin_ = now;
+    const std::size_t first = program_.waypoints.size();
     program_.waypoints.insert(program_.waypoints.end(), motion.waypoints.begin(), motion.waypoints.end());
+    program_.waypoints[first].not_before = motion::as_named(std::clamp(now - begin_, 0.0, motion::kLatestDeparture));
     file_.replace(kUnfinishedProgram + motion::format_program(program_));
     if (!file_.is_published() && !file_.replaces_file()) file_.publish();
   }

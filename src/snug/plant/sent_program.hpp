@@ -9,8 +9,9 @@ namespace snug::plant {
 /// The first line of a program that may not be all that is sent.
 inline constexpr const char* kUnfinishedProgram = "# incomplete, the session had not ended\n";
 
-/// Hands everything on. After each start the file holds every waypoint that was sent until then; it appears at its path
-/// with the first, where no earlier file is there: that one stays until finish(), and the new one is beside it.
+/// Hands everything on. The first waypoint of each motion departs no earlier than it was sent. After each start the
+/// file holds every waypoint that was sent until then; it appears at its path with the first, where no earlier file is
+/// there: that one stays until finish(), and the new one is beside it.
 class SentProgram final : public Plant {
  public:
   /// `file` and `plant` are not owned. `tracking`: with which the plant moves.
@@ -34,6 +35,7 @@ class SentProgram final : public Plant {
   Plant& plant_;
   OutputFile& file_;
   motion::Program program_;
+  double begin_ = 0.0;  ///< s, of the plant's time, when the first motion was sent
 };
 
 }  // namespace snug::plant

@@ -105,6 +105,21 @@ TEST_P(BothControllers, SwitchesAtDepartureAndWaitsOnlyForVacuumChangesAndBlowOf
   }
 }
 
+TEST_P(BothControllers, StandUntilTheNextRowMayBegin) {
+  Program program{"p", {row("a", Vector3(0.02, 0.0, 0.0)), row("a", Vector3(0.02, 0.1, 0.0), {.conveyor_cw = true})}};
+  program.waypoints[1].not_before = 4.0;
+  const std::vector<Tick> ticks = run(prepare(program, settings_of(GetParam())), Pose{});
+  const std::size_t departure = departure_of(ticks, 1);
+  EXPECT_EQ(departure, 500U);
+  EXPECT_LT(arrival_of(ticks, 0), 300U);
+  EXPECT_EQ(ticks[departure - 1].output.phase, ControllerPhase::Standing);
+  EXPECT_FALSE(ticks[departure - 1].output.io.conveyor_cw);
+  EXPECT_LT((ticks[departure - 1].output.tool.X_WE.p - program.waypoints[0].X_WE.p).norm(), 1e-4);
+  program.waypoints[1].not_before = 1e-3;  // long past
+  const std::vector<Tick> late = run(prepare(program, settings_of(GetParam())), Pose{});
+  EXPECT_EQ(departure_of(late, 1), arrival_of(late, 0));
+}
+
 TEST_P(BothControllers, WaitAWholeNumberOfTicksExactly) {
   Program program{"p", {row("a", Vector3::Zero(), {.vacuum = true})}};
   for (const auto& [wait, count] : std::vector<std::pair<double, int>>{{0.0, 0}, {0.008, 1}, {0.4, 50}, {0.5, 63}}) {

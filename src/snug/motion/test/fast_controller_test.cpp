@@ -79,6 +79,31 @@ TEST(FastController, BlendsWhatTouchesNothingAndStaysNearTheCorner) {
   EXPECT_LT(course.arrival(1), run(prepare({"stops", stops}, fast_settings())).arrival(1) - 0.1);
 }
 
+TEST(FastController, StandsUntilTheNextRowMayBegin) {
+  for (const double instant : {1.0, 2.004, 5.0}) {  // the tool is there at 1.3 s
+    std::vector<Waypoint> waits = kCorner, stops = kCorner;
+    waits[1].not_before = instant;
+    waits[1].io.blow_off = true;  // switched then, not before
+    stops.pop_back();
+    const Course course = run(prepare({"waits", waits}, fast_settings()));
+    const Course alone = run(prepare({"stops", stops}, fast_settings()));
+    const double there = alone.arrival(0);
+    EXPECT_EQ(course.arrival(0), there) << "no blend: a motion that is sent ends at rest";
+    double departed = 0.0;
+    for (std::size_t i = 0; i < course.ticks.size(); ++i) {
+      const ControllerOutput& out = course.ticks[i];
+      if (i < alone.ticks.size()) EXPECT_EQ(out.tool, alone.ticks[i].tool) << "until there as if it were all";
+      if (out.departed == 1) departed = 0.008 * static_cast<double>(i);
+      EXPECT_EQ(out.io.blow_off, departed > 0.0);
+      if (departed > 0.0 || i < alone.ticks.size() - 1) continue;
+      EXPECT_EQ(out.phase, ControllerPhase::Standing);
+      EXPECT_EQ(out.tool, (ToolState{kCorner[0].X_WE, {}}));
+    }
+    EXPECT_NEAR(departed, std::max(there, instant), 0.004 + 1e-9) << "the nearest tick, or when it is there";
+    EXPECT_TRUE(course.ticks.back().finished_now);
+  }
+}
+
 TEST(FastController, TempoStretchesMotionsButNotTheirWindow) {
   const std::vector<Waypoint> one = {row("PrePick(A)", {1.0, 0.0, 0.0})};
   const double window = FastSettings{}.empty.window;

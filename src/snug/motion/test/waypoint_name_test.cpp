@@ -130,6 +130,34 @@ TEST(WaypointName, SaysAtWhichPaceAHeavyBoxIsCarried) {
   EXPECT_EQ(read.waypoints[0].swing, waypoint.swing);
 }
 
+TEST(WaypointName, SaysWhenItMayBegin) {
+  Waypoint waypoint = make_waypoint(MotionClass::PrePlace, "BOX@7", Pose{});
+  waypoint.not_before = 7.512;
+  EXPECT_EQ(name_of(waypoint), "PrePlace(BOX@7)@7.512");
+  EXPECT_EQ(parse_waypoint_name(name_of(waypoint)), waypoint);
+  waypoint.variant = "_turn";
+  waypoint.swing = Swing{0.42, 0.31, 0.7};
+  EXPECT_EQ(name_of(waypoint), "PrePlace(BOX@7)_turn~0.42+0.31*0.70@7.512");
+  const Program read = parse_program(format_program({"p.csv", {waypoint}}), "p.csv");
+  EXPECT_EQ(read.waypoints[0].not_before, 7.512);
+  EXPECT_EQ(name_of(read.waypoints[0]), name_of(waypoint));
+  EXPECT_EQ(parse_waypoint_name("home@0.0004").not_before, std::nullopt) << "at the start";
+  EXPECT_EQ(as_named(7.5126), 7.513);
+  EXPECT_EQ(as_named(0.0), std::nullopt);
+  for (const char* other : {"a@", "a@b", "PrePick(a@3)", "home@3x", "@", "a@3@"}) {
+    EXPECT_EQ(parse_waypoint_name(other).not_before, std::nullopt) << other;
+    EXPECT_EQ(name_of(parse_waypoint_name(other)), other);
+    EXPECT_FALSE(has_malformed_instant(parse_waypoint_name(other))) << other;
+  }
+  for (const char* refused : {"home@-1", "home@nan", "Place(B)@7200.1", "Place027@1e9", "a@1e999", "a@inf"}) {
+    SCOPED_TRACE(refused);
+    EXPECT_TRUE(has_malformed_instant(parse_waypoint_name(refused)));
+    EXPECT_THROW((void)parse_program(std::string("0,0,0.5,0,3.14,0,") + refused + ",0,0,0,0,0,0\n", "p.csv"),
+                 InputError);
+    EXPECT_THROW((void)format_program({"p.csv", {parse_waypoint_name(refused)}}), InputError);
+  }
+}
+
 TEST(WaypointName, WithAMalformedSwingIsRefusedByFiles) {
   for (const char* name :
        {"PostPick(BOX027)~nan+0", "PostPick(BOX027)~99999+-3", "PrePlace(B)~0.42", "PrePlace(B)~0.42+",

@@ -9,6 +9,7 @@
 
 #include "snug/core/test/scratch_folder.hpp"
 #include "snug/motion/program_csv.hpp"
+#include "snug/motion/waypoint_name.hpp"
 #include "snug/plant/test/kinematic_plant.hpp"
 #include "snug/plant/wait.hpp"
 
@@ -37,8 +38,11 @@ TEST(SentProgram, HoldsWhatWasSentAfterEachStartAndSaysWhenThatIsAll) {
   EXPECT_FALSE(std::filesystem::exists(path)) << "nothing was sent";
   for (int i = 1; i < 5; ++i) {
     const Motion motion = to(0.1 * i + 0.2);
+    const double begun = plant.read().time;
+    EXPECT_EQ(begun > 0.0, i > 1);
     sent.start(motion);
     whole.waypoints.push_back(motion.waypoints[0]);
+    if (i > 1) whole.waypoints.back().not_before = motion::as_named(begun);
     EXPECT_EQ(content_of(path), kUnfinishedProgram + motion::format_program(whole));
     EXPECT_EQ(motion::load_program(path).waypoints.size(), whole.waypoints.size()) << "it is read as any other";
     while (sent.is_moving()) (void)sent.advance();
