@@ -13,7 +13,9 @@
 #include "snug/core/read_file.hpp"
 #include "snug/core/table.hpp"
 #include "snug/identification/internal/measured_table.hpp"
+#include "snug/identification/internal/program_clock.hpp"
 #include "snug/identification/internal/program_motion.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/validation/measurement.hpp"
 
 namespace snug::identification {
@@ -165,12 +167,7 @@ double tool_distance(const validation::SimulatedRun& run, const record::ArchiveR
   return count > 0.0 ? std::sqrt(sum / count) : std::numeric_limits<double>::infinity();
 }
 
-/// The recording itself leads the tool.
-RecordedMotion led_motion(const model::SceneTask& task, const record::ArchiveRecording& recording,
-                          const std::string& where) {
-  if (!has_drive(recording))
-    throw InputError(where, '/' + recording.name, "no tool poses with actual_digital_output_bits of the robot",
-                     "both, to lead the tool as recorded; or program: {motion: program}");
+std::vector<std::string> parcels_of(const model::SceneTask& task) {
   const model::Scenario scenario = model::load_scenario(task.scenario);
   const model::Sequence* sequence = model::find_sequence(scenario, task.program->sequence);
   if (sequence == nullptr)
@@ -178,10 +175,46 @@ RecordedMotion led_motion(const model::SceneTask& task, const record::ArchiveRec
                      "a sequence of the scenario");
   std::vector<std::string> parcels;
   for (const model::Item& item : sequence->items) parcels.push_back(item.parcel);
-  const validation::SimulatedRun run = run_of_log(recording, parcels);
+  return parcels;
+}
+
+/// s, what the robot's log shows at the start of the program, where the program is a session's and its tool goes as the
+/// recorded one, some ticks early or late: rows end by what is felt, which the parameters change.
+std::optional<double> find_session_start(const model::SceneTask& task, const validation::SimulatedRun& run,
+                                         const record::ArchiveRecording& recording,
+                                         const validation::Measurement& measured) {
+  constexpr double kEarlyOrLate = 0.1;  // s
+  const motion::Program program = motion::load_program(task.program->file);
+  const auto is_timed = [](const motion::Waypoint& one) { return one.not_before.has_value(); };
+  const auto clock = std::ranges::find(measured.clocks, "robot", &validation::SourceClock::source);
+  if (std::ranges::none_of(program.waypoints, is_timed) || clock == measured.clocks.end() || !clock->fit) return {};
+  const double first = recording.robot.times.front();
+  const std::optional<double> start =
+      internal::find_program_start(run, recording, first - clock->fit->to_reference(first));
+  if (!start || internal::find_path_distance(run, recording, *start, kEarlyOrLate) > kSameTool) return {};
+  return start;
+}
+
+/// Of a program that leads, whose clock is that of the robot's log.
+RecordedMotion session_motion(const model::SceneTask& task, const validation::SimulatedRun& run,
+                              const record::ArchiveRecording& recording, double start, const std::string& where) {
+  validation::SimulatedRun log = run_of_log(recording, parcels_of(task));
+  validation::Measurement measured = validation::align(log, recording, {}, where);
+  for (double& time : measured.pose_times) time += recording.robot.times.front() - start;
+  log.times = run.times;
+  return motion_of(task, log, recording, measured, where);
+}
+
+/// The recording itself leads the tool.
+RecordedMotion led_motion(const model::SceneTask& task, const record::ArchiveRecording& recording,
+                          const std::string& where) {
+  if (!has_drive(recording))
+    throw InputError(where, '/' + recording.name, "no tool poses with actual_digital_output_bits of the robot",
+                     "both, to lead the tool as recorded; or program: {motion: program}");
+  const validation::SimulatedRun run = run_of_log(recording, parcels_of(task));
   const validation::Measurement measured = validation::align(run, recording, {}, where);
   RecordedMotion motion = motion_of(task, run, recording, measured, where);
-  motion.drive = make_drive(recording, run, measured, scenario.controller.tick);
+  motion.drive = make_drive(recording, run, measured, model::load_scenario(task.scenario).controller.tick);
   return motion;
 }
 
@@ -246,6 +279,10 @@ std::vector<RecordedMotion> motions_of_archive(const model::SceneTask& task, con
       const bool may_lead = task.program->motion == model::TaskMotion::Auto && has_drive(recording);
       if (!may_lead || tool_distance(*run, recording, measured) <= kSameTool) {
         motions.push_back(motion_of(task, *run, recording, measured, where));
+        continue;
+      }
+      if (const std::optional<double> start = find_session_start(task, *run, recording, measured)) {
+        motions.push_back(session_motion(task, *run, recording, *start, where));
         continue;
       }
     }

@@ -56,7 +56,9 @@ inline constexpr double kSameTool =
 /// What an archive recorded of the task's bodies, on the clock of the simulation of the task's scenario: one motion for
 /// each recording of a sequence, as means over about a sixtieth of a second, or half a second where the body rests.
 /// With TaskMotion::Recorded, and with Auto where the tool of `simulated` is further than kSameTool from the recorded
-/// one (root mean square), the recording leads the tool, and its robot's clock is that of the simulation.
+/// one (root mean square), the recording leads the tool, and its robot's clock is that of the simulation. A program
+/// that says when its rows begin (Waypoint::not_before) leads, too, where that distance is kept within a tenth of a
+/// second; the robot's clock is then found on the way to the first pick.
 /// Throws InputError for a tracked body that was not recorded, and where no clock is found.
 [[nodiscard]] std::vector<RecordedMotion> motions_of_archive(const model::SceneTask& task,
                                                              const record::Recording& simulated,

@@ -108,7 +108,8 @@ struct TaskProgram {
   TaskMotion motion = TaskMotion::Auto;
   std::optional<std::string> controller;  ///< lagged, exact, fast; absent: as the program was packed
   std::optional<double> tempo;            ///< with fast; absent: that it was packed with
-  /// Name of the scenario's robot, through whose joints the program goes; "none", absent: the tool moves by itself.
+  /// Name of the scenario's robot, through whose joints the program goes; "none": the tool moves by itself; absent: the
+  /// one that the program was packed with, if the scenario has it, else none.
   std::optional<std::string> robot;
   bool operator==(const TaskProgram&) const = default;
 };

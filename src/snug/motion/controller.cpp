@@ -80,7 +80,7 @@ void advance_program(const PreparedProgram& plan, const ToolState& measured, Con
       output.departed = state.row;
     }
   } else if (state.phase == ControllerPhase::Standing && !is_too_early(plan, state, state.row + 1)) {
-    depart(plan, state.row + 1, X_WE, state);
+    depart(plan, state.row + 1, measured.X_WE, state);  // as a motion that is sent by itself
     output.departed = state.row;
   }
 }

@@ -261,6 +261,7 @@ void advance_fast(const PreparedProgram& plan, const ToolState& measured, Contro
       output.departed = state.row;
     }
   } else if (state.phase == ControllerPhase::Standing && !is_too_early(plan, state, state.row + 1)) {
+    state.command.X_WE = measured.X_WE;  // as a motion that is sent by itself
     depart(plan, state.row + 1, state);
     output.departed = state.row;
   }

@@ -204,6 +204,7 @@ Program parse_program(std::string_view text, std::string_view name) {
   }
   if (program.waypoints.empty()) throw InputError(std::string(name), "", "no rows", "at least one waypoint");
   program.tracking = find_tracking(whole, name);
+  program.robot = find_robot(whole, name);
   return program;
 }
 
@@ -217,7 +218,7 @@ Program load_program(const std::filesystem::path& path) {
 }
 
 std::string format_program(const Program& program) {
-  std::string text = format_tracking(program.tracking);
+  std::string text = format_tracking(program.tracking) + format_robot(program.robot);
   for (std::size_t row = 0; row < program.waypoints.size(); ++row) {
     check_writable(program, row);
     const Waypoint& w = program.waypoints[row];

@@ -1,4 +1,4 @@
-// Tracking of a program: a comment of its file says for which tracking it was made.
+// Tracking of a program, and its robot: comments of its file say for which it was made.
 #include "snug/motion/program_tracking.hpp"
 
 #include <fmt/format.h>
@@ -17,6 +17,7 @@ namespace snug::motion {
 namespace {
 
 const std::array<std::string, 2> kKeys{"tempo", "tracking"};
+constexpr std::string_view kRobot = "robot";
 constexpr double kLeast = 0.1;  ///< as FastTracking
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
@@ -60,6 +61,18 @@ bool is_misspelt(const Setting& setting) {
   return setting.separator != '\0' && !find_nearest(setting.word, kKeys).empty();
 }
 
+/// Calls visit(what stands behind the '#', line from 1) for each comment.
+template <class Visit>
+void visit_comments(std::string_view text, const Visit& visit) {
+  text = without_byte_order_mark(text);
+  for (int line = 1; !text.empty(); ++line) {
+    const std::size_t end = text.find('\n');
+    const std::string_view row = trim(text.substr(0, end));
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    if (row.starts_with('#')) visit(trim(row.substr(1)), line);
+  }
+}
+
 /// Of a comment that says tempo or tracking.
 Tracking read_value(const Setting& setting, const std::string& place) {
   const auto fail = [&](const std::string& expected) {
@@ -85,21 +98,32 @@ std::string format_tracking(const Tracking& tracking) {
 
 Tracking find_tracking(std::string_view text, std::string_view name) {
   std::optional<Tracking> found;
-  text = without_byte_order_mark(text);
-  for (int line = 1; !text.empty(); ++line) {
-    const std::size_t end = text.find('\n');
-    std::string_view row = trim(text.substr(0, end));
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    if (!row.starts_with('#')) continue;
-    row = trim(row.substr(1));
-    const Setting setting = parse_comment(row);
+  visit_comments(text, [&](std::string_view comment, int line) {
+    const Setting setting = parse_comment(comment);
     const std::string place = fmt::format("{}:{}", name, line);
-    if (is_misspelt(setting)) throw InputError(place, "", fmt::format("'# {}'", row), "'# tempo: NUMBER'");
-    if (setting.separator != ':' || (setting.word != kKeys[0] && setting.word != kKeys[1])) continue;
+    if (is_misspelt(setting)) throw InputError(place, "", fmt::format("'# {}'", comment), "'# tempo: NUMBER'");
+    if (setting.separator != ':' || (setting.word != kKeys[0] && setting.word != kKeys[1])) return;
     if (found) throw InputError(place, setting.word, fmt::format("'{}'", setting.value), "one tempo or tracking");
     found = read_value(setting, place);
-  }
+  });
   return found.value_or(LaggedTracking{});
+}
+
+std::string format_robot(std::string_view robot) {
+  return robot.empty() ? std::string() : fmt::format("# {}: {}\n", kRobot, robot);
+}
+
+std::string find_robot(std::string_view text, std::string_view name) {
+  std::string found;
+  visit_comments(text, [&](std::string_view comment, int line) {
+    const Setting setting = parse_comment(comment);
+    if (setting.separator != ':' || setting.word != kRobot || setting.value.empty()) return;
+    if (setting.value.find_first_of(" \t") != std::string_view::npos) return;
+    if (!found.empty())
+      throw InputError(fmt::format("{}:{}", name, line), setting.word, fmt::format("'{}'", setting.value), "one robot");
+    found = setting.value;
+  });
+  return found;
 }
 
 }  // namespace snug::motion

@@ -1,4 +1,4 @@
-// Tracking of a program: a comment of its file says for which tracking it was made.
+// Tracking of a program, and its robot: comments of its file say for which it was made.
 #pragma once
 
 #include <string>
@@ -15,5 +15,11 @@ namespace snug::motion {
 /// tempo that is no number from 0.1 to 1, a tracking that is neither lagged nor exact, for a second one of either, and
 /// for a comment that is meant as one but misspelt ("# tmepo: 1", "# tempo = 1"). `name` stands for the file.
 [[nodiscard]] Tracking find_tracking(std::string_view text, std::string_view name);
+
+/// "# robot: ur10\n"; nothing of none.
+[[nodiscard]] std::string format_robot(std::string_view robot);
+/// Name of the robot that a comment says, a word without blanks (others are remarks); empty where none does. Throws
+/// InputError with file and line for a second one.
+[[nodiscard]] std::string find_robot(std::string_view text, std::string_view name);
 
 }  // namespace snug::motion

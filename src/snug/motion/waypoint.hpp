@@ -82,6 +82,7 @@ struct Program {
   std::string name;  ///< file or label, for messages
   std::vector<Waypoint> waypoints;
   Tracking tracking = {};  ///< for which it was made
+  std::string robot = {};  ///< name of the robot through whose joints it was sent; empty: none, or not said
   bool operator==(const Program&) const = default;
 };
 

@@ -2,14 +2,15 @@
 #include "snug/plant/sent_program.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "snug/motion/program_csv.hpp"
 #include "snug/motion/waypoint_name.hpp"
 
 namespace snug::plant {
 
-SentProgram::SentProgram(Plant& plant, OutputFile& file, const motion::Tracking& tracking)
-    : plant_(plant), file_(file), program_{"pack", {}, tracking} {}
+SentProgram::SentProgram(Plant& plant, OutputFile& file, const motion::Tracking& tracking, std::string robot)
+    : plant_(plant), file_(file), program_{"pack", {}, tracking, std::move(robot)} {}
 
 void SentProgram::start(const Motion& motion) {
   const bool is_finite = std::ranges::all_of(

@@ -14,8 +14,9 @@ inline constexpr const char* kUnfinishedProgram = "# incomplete, the session had
 /// there: that one stays until finish(), and the new one is beside it.
 class SentProgram final : public Plant {
  public:
-  /// `file` and `plant` are not owned. `tracking`: with which the plant moves.
-  SentProgram(Plant& plant, OutputFile& file, const motion::Tracking& tracking);
+  /// `file` and `plant` are not owned. `tracking`: with which the plant moves; `robot`: the name of the one that moves
+  /// the tool, or empty.
+  SentProgram(Plant& plant, OutputFile& file, const motion::Tracking& tracking, std::string robot = {});
 
   [[nodiscard]] Description describe() const override { return plant_.describe(); }
   [[nodiscard]] Feedback read() override { return plant_.read(); }

@@ -185,7 +185,8 @@ Trial run_trial(const model::Scenario& scenario, const std::string& sequence, co
   std::optional<RecordedSession<simulated_plant::LiveRecording>> recorded;
   if (files.recording) recorded.emplace(recording.emplace(plant, scenario, *files.recording));
   std::optional<plant::SentProgram> sent;
-  if (files.program != nullptr) sent.emplace(plant, *files.program, session.simulation.tracking);
+  if (files.program != nullptr)
+    sent.emplace(plant, *files.program, session.simulation.tracking, session.simulation.robot);
   const auto after_item = [&](const Trial& so_far, int item, int items) {
     if (recorded) recorded->note(so_far.session);
     if (progress) progress(so_far, item, items);
@@ -208,7 +209,8 @@ Trial run_trial(const model::Scenario& scenario, const std::string& sequence, co
     recorded.emplace(recording.emplace(plant, scenario, sequence, session.simulation, *files.recording));
   plant::Plant& seen = recording ? static_cast<plant::Plant&>(*recording) : plant;
   std::optional<plant::SentProgram> sent;
-  if (files.program != nullptr) sent.emplace(seen, *files.program, session.simulation.tracking);
+  if (files.program != nullptr)
+    sent.emplace(seen, *files.program, session.simulation.tracking, session.simulation.robot);
   plant::Plant& packed = sent ? static_cast<plant::Plant&>(*sent) : seen;
   const auto after_item = [&](const Trial& so_far, int item, int items) {
     if (recorded) recorded->note(so_far.session);

@@ -26,7 +26,11 @@ runs::RunResult run_observed(const model::Scenario& scenario, const model::TaskP
   options.program = motion::load_program(program.file);
   options.simulation.tracking =
       motion::choose_tracking(program.controller, program.tempo, options.program->tracking, program.file.string());
-  if (program.robot && *program.robot != "none") options.simulation.robot = *program.robot;
+  if (program.robot) {
+    if (*program.robot != "none") options.simulation.robot = *program.robot;
+  } else if (scenario.robot && scenario.robot->name == options.program->robot) {
+    options.simulation.robot = options.program->robot;
+  }
   options.sequence = program.sequence;
   options.corrections = program.corrections;
   options.until = until;

@@ -92,7 +92,9 @@ TEST(FastController, StandsUntilTheNextRowMayBegin) {
     double departed = 0.0;
     for (std::size_t i = 0; i < course.ticks.size(); ++i) {
       const ControllerOutput& out = course.ticks[i];
-      if (i < alone.ticks.size()) EXPECT_EQ(out.tool, alone.ticks[i].tool) << "until there as if it were all";
+      if (i < alone.ticks.size()) {
+        EXPECT_EQ(out.tool, alone.ticks[i].tool) << "until there as if it were all";
+      }
       if (out.departed == 1) departed = 0.008 * static_cast<double>(i);
       EXPECT_EQ(out.io.blow_off, departed > 0.0);
       if (departed > 0.0 || i < alone.ticks.size() - 1) continue;

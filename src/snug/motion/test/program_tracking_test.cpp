@@ -84,6 +84,15 @@ TEST(ProgramTracking, IsWrittenAndReadForEachKind) {
   }
 }
 
+TEST(ProgramTracking, SaysWithWhichRobot) {
+  const Program program = parse_program("# tempo: 1\n# Robot : ur10\n" + kTempoRow, "p.csv");
+  EXPECT_EQ(program.robot, "ur10");
+  EXPECT_EQ(parse_program(format_program(program), "p.csv").robot, "ur10");
+  EXPECT_EQ(find_robot("# robot: that of the second hall\n# robot:\n# robots: a\n" + kTempoRow, "p.csv"), "");
+  EXPECT_EQ(format_program({"p.csv", program.waypoints}).find("robot"), std::string::npos);
+  EXPECT_THROW((void)parse_program("# robot: a\n# robot: b\n" + kTempoRow, "p.csv"), InputError);
+}
+
 TEST(ProgramTracking, IsWhatTheUserAsksForElseWhatTheProgramWasMadeFor) {
   const Tracking made_for = FastTracking{0.6};
   const auto choose = [&](std::optional<std::string> word, std::optional<double> tempo) {

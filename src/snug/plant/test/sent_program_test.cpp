@@ -33,8 +33,8 @@ TEST(SentProgram, HoldsWhatWasSentAfterEachStartAndSaysWhenThatIsAll) {
   const std::filesystem::path path = folder / "sent.csv";
   test::KinematicPlant plant;
   OutputFile file(path);
-  SentProgram sent(plant, file, motion::FastTracking{0.8});
-  motion::Program whole{"sent", {}, motion::FastTracking{0.8}};
+  SentProgram sent(plant, file, motion::FastTracking{0.8}, "ur10");
+  motion::Program whole{"sent", {}, motion::FastTracking{0.8}, "ur10"};
   EXPECT_FALSE(std::filesystem::exists(path)) << "nothing was sent";
   for (int i = 1; i < 5; ++i) {
     const Motion motion = to(0.1 * i + 0.2);

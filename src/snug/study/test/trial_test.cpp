@@ -10,7 +10,9 @@
 #include "snug/model/test/shortened.hpp"
 #include "snug/motion/program_csv.hpp"
 #include "snug/record/reader.hpp"
+#include "snug/runs/recorder.hpp"
 #include "snug/runs/result_json.hpp"
+#include "snug/runs/run.hpp"
 #include "snug/study/monte_carlo.hpp"
 #include "snug/study/witness.hpp"
 
@@ -71,6 +73,46 @@ TEST(Trial, IsTheSameRecordedAndItsRecordingHoldsWhatTheSessionSays) {
   EXPECT_EQ(read.header.program_text, motion::format_program(program));
   for (const record::Event& event : events_of(recorded.session)) {
     EXPECT_NE(std::ranges::find(read.events, event), read.events.end()) << event.kind << " of " << event.body;
+  }
+}
+
+TEST(Trial, ARunOfTheProgramThatWasSentIsTheSession) {
+  const model::Scenario scenario = shortened(2);
+  for (const char* robot : {"", "ur10"}) {
+    SCOPED_TRACE(robot);
+    const snug::test::ScratchFolder folder;
+    OutputFile recording(folder / "run.h5"), program(folder / "sent.csv");
+    TrialFiles files;
+    files.recording.emplace().file = &recording;
+    files.program = &program;
+    SessionOptions options = quick(0);
+    SimulatedPlantOptions plant = plant_seed(0);  // the scenario's own numbers
+    options.simulation.robot = plant.simulation.robot = robot;
+    ASSERT_EQ(run_trial(scenario, "1", options, plant, {}, files).executed_boxes, 2);
+    runs::RunCapture again;
+    runs::RunOptions run;
+    run.program = motion::load_program(folder / "sent.csv");
+    EXPECT_EQ(run.program->robot, robot);
+    run.sequence = "1";
+    run.simulation.tracking = run.program->tracking;
+    run.simulation.robot = robot;
+    run.observer = &again;
+    EXPECT_FALSE(runs::run(scenario, run).failure);
+    const record::Recording read = record::load_recording(folder / "run.h5");
+    ASSERT_GT(read.frames.size(), 1000U);
+    std::size_t compared = 0;
+    for (const record::Frame& frame : again.recording.frames) {
+      const auto same = std::ranges::find_if(
+          read.frames, [&](const record::Frame& one) { return std::abs(one.time - frame.time) < 1e-6; });
+      if (same == read.frames.end()) continue;
+      ++compared;
+      ASSERT_LT((same->X_WE.p - frame.X_WE.p).norm(), 1e-5) << frame.time;
+      for (std::size_t b = 0; b < frame.bodies.size(); ++b) {
+        if (!frame.bodies[b].present || !same->bodies[b].present) continue;
+        ASSERT_LT((same->bodies[b].X_WB.p - frame.bodies[b].X_WB.p).norm(), 1e-4) << frame.time << " body " << b;
+      }
+    }
+    EXPECT_GT(compared, read.frames.size() / 2);
   }
 }
 
