@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """identify_packed.py: whether `snug identify scene` finds what was planted in the plant of a packed program.
 
-  identify_packed.py [--seed 1] [--count 10] [--boxes 2] [--robot none,ur10] [--numbers LIST] [--repetitions 1] [--sensors FILE] [--folder DIR] [--threads N]
+  identify_packed.py [--seed 1] [--count 10] [--boxes 3] [--robot none,ur10] [--numbers LIST] [--repetitions 1] [--sensors FILE] [--folder DIR] [--threads N]
                      [--evaluate]
 
 For each seed: five numbers of the demonstrator's cell are drawn (friction and stiffness of box and container, lateral, axial and bending stiffness of the cup)
@@ -85,7 +85,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seed", type=int, default=1, help="of the first experiment; the others follow")
     parser.add_argument("--count", type=int, default=10)
-    parser.add_argument("--boxes", type=int, default=2)
+    parser.add_argument("--boxes", type=int, default=3)
     parser.add_argument("--robot", default="none,ur10", help="none, ur10, or both in turn")
     parser.add_argument("--numbers", type=lambda text: text.split(","), default=list(NUMBERS), help=", ".join(NUMBERS))
     parser.add_argument("--repetitions", type=int, default=1)
