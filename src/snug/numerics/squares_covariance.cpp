@@ -105,8 +105,8 @@ Eigen::VectorXd shared_step(const BatchedDerivatives& at, const std::vector<Eige
 Eigen::MatrixXd squares_covariance(const BatchedProblem& at, const BatchedDerivatives& found, double excess) {
   // At two deviations along each axis the sum of squares has to have risen by four. Where it rises by less than half of
   // that the axis is longer, and is looked at again from there. What it strays from its parabola (root mean square q
-  // over axes and sides; of a cliff a hundred) it strays at its minimum, too: a point as good by chance may be sqrt(q)
-  // deviations away.
+  // over axes and sides; of a cliff a hundred) it strays at its minimum, too: a point as good by chance is anywhere
+  // within sqrt(q) deviations, q/3 of variance.
   constexpr int kRounds = 6;
   constexpr double kMost = 4.0;     // times as far as in the round before
   constexpr double kRough = 8.0;    // times as far, by what all axes stray alone: looked at again, too
@@ -131,9 +131,10 @@ Eigen::MatrixXd squares_covariance(const BatchedProblem& at, const BatchedDeriva
       for (const RisingSquares::Rise& rise : {there, back})
         strayed[k] += std::pow(std::min(std::abs(rise.found - share[k] * rise.square), kCliff), 2);
     }
-    double q = std::sqrt(strayed.sum() / static_cast<double>(2 * n));
-    if (q > 1.0) q += std::clamp(excess, 0.0, kMostExcess);  // a rough sum has several local minima
-    deviation = first.cwiseProduct(((1.0 + q) * share.cwiseInverse()).cwiseSqrt());
+    const double q = std::sqrt(strayed.sum() / static_cast<double>(2 * n));
+    double wander = q / 3.0;
+    if (q > 1.0) wander += std::clamp(excess, 0.0, kMostExcess);  // a rough sum has several local minima
+    deviation = first.cwiseProduct(((1.0 + wander) * share.cwiseInverse()).cwiseSqrt());
     open.clear();
     for (Eigen::Index k = 0; k < n; ++k)
       if (deviation[k] > (share[k] < 1.0 ? 2.0 : kRough) * length[k]) open.push_back(k);
