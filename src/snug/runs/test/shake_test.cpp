@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "snug/core/input_error.hpp"
+#include "snug/runs/shake_report.hpp"
 
 namespace snug::runs {
 namespace {
@@ -161,6 +162,26 @@ TEST(ShakeProfile, KnowsItsNamesAndTheLongerSideLooksForward) {
   EXPECT_THROW((void)make_shake_profile("trukc", options), InputError);
   options.size = Vector3(0.37, 0.57, 0.25);
   EXPECT_NEAR(make_shake_profile("truck", options)[0].at(0.5).acceleration_T.y(), -0.8 * 9.81, 1e-12);
+}
+
+TEST(ShakeReport, NamesTheWorstBoxOfAMotionAndWhatEachLimitWas) {
+  ShakeResult result;
+  result.boxes = {"A", "B"};
+  result.sizes = {Vector3::Constant(0.1), Vector3::Constant(0.1)};
+  result.inner_size = Vector3(0.6, 0.4, 0.3);
+  const std::vector<Pose> poses(2);
+  result.runs = {{"stop", 1.0, {{"A", 0.001, 0.0, 0.0, false}, {"B", 0.030, 0.02, 0.01, false}}, 1.5, 0.2, poses, true},
+                 {"stop", 0.8, {{"A", 0.050, 0.05, 0.0, false}, {"B", 0.0, 0.0, 0.0, true}}, 9.0, 0.4, poses, true}};
+  result.worst = 1;
+  const ShakeWords words{"load.yaml", "conveyor", "none", 20.0, 6.0};
+  EXPECT_EQ(shake_verdict(result, words),
+            "does not hold: 2 of 2 boxes beyond 20 mm or 6 degrees in 'stop', friction x 0.80; worst B (falls)");
+  const std::string text = format_shake_text(result, words);
+  EXPECT_EQ(text.find("     1.00"), std::string::npos) << "of each motion the worst friction alone";
+  EXPECT_NE(format_shake_json(result, words).find("\"max_shift_mm\": 20.0"), std::string::npos);
+  EXPECT_NE(format_shake_page(result, words).find("friction x 0.80"), std::string::npos);
+  result.runs.clear();
+  EXPECT_EQ(shake_verdict(result, words), "holds: 2 boxes within 20 mm and 6 degrees");
 }
 
 }  // namespace
