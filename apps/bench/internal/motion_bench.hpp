@@ -5,7 +5,7 @@
 
 namespace snug::bench::internal {
 
-/// On paper, one thread, no rehearsal: for every item of the scenario's sequences and the first places that its
+/// Planned only, one thread, no rehearsal: for every item of the scenario's sequences and the first places that its
 /// decision names, from the intent to the timed motion: waypoints of pick and place around the robot's base, the
 /// joints' reach along every way, and the motion within the joints' limits, sampled at every tick. Boxes that have to
 /// be set down to be turned are left out: theirs are two motions with a look in between.

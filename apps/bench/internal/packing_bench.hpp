@@ -9,7 +9,7 @@
 
 namespace snug::bench::internal {
 
-/// On paper, one thread, default decision time: every sequence of the scenario until an item has no place.
+/// Planned only, one thread, default decision time: every sequence of the scenario until an item has no place.
 struct DecisionFigures {
   double median_seconds = 0.0;   ///< CPU time of a decision
   double longest_seconds = 0.0;  ///< CPU time of the longest

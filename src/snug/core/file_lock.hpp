@@ -1,4 +1,4 @@
-// FileLock: locks by which the writers and readers of one file heed each other, in this process and in others.
+// FileLock: locks by which the writers and readers of one file respect each other, in this process and in others.
 #pragma once
 
 #include <cstdint>

@@ -7,7 +7,7 @@
 #include "snug/cell/drawn_scenario.hpp"
 #include "snug/core/hash.hpp"
 #include "snug/core/input_error.hpp"
-#include "snug/environment/internal/happening.hpp"
+#include "snug/environment/internal/placer.hpp"
 
 namespace snug::environment {
 namespace {
@@ -108,12 +108,12 @@ struct Environment::State {
   }
   State(const State& other) = default;
 
-  /// A copy's happening goes on by itself.
+  /// A copy's placer goes on by itself.
   struct Clonable {
     Clonable() = default;
     Clonable(const Clonable& other) : it(other.it ? other.it->clone() : nullptr) {}
     Clonable& operator=(const Clonable&) = delete;
-    std::unique_ptr<internal::Happening> it;
+    std::unique_ptr<internal::Placer> it;
   };
 
   void reset(std::uint64_t seed) {
@@ -133,12 +133,12 @@ struct Environment::State {
     has_ended = false;
     finder.reset();
     heights.assign(static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns), 0.0F);
-    begin_happening(rng);
+    begin_placer(rng);
     (void)look_for_places();
   }
 
-  void begin_happening(Rng rng) {
-    happening.it.reset();
+  void begin_placer(Rng rng) {
+    placer.it.reset();
     const bool changes = settings.varies;
     items.clear();
     if (settings.mode == Mode::Geometric && !changes) {
@@ -154,7 +154,7 @@ struct Environment::State {
     if (settings.mode == Mode::Geometric) return;
     const std::string name(kSequence);
     const internal::Episode episode{drawn, name, settings};
-    happening.it = settings.mode == Mode::Statics ? make_statics(episode) : make_execution(episode);
+    placer.it = settings.mode == Mode::Statics ? make_statics(episode) : make_execution(episode);
   }
 
   /// For the next item; why there is none.
@@ -200,8 +200,8 @@ struct Environment::State {
     const auto place = place_of(action);
     if (!place) {
       result.reason = place.error();
-    } else if (happening.it) {
-      const internal::Outcome outcome = happening.it->place(next, *place, boxes);
+    } else if (placer.it) {
+      const internal::Outcome outcome = placer.it->place(next, *place, boxes);
       result.is_placed = outcome.is_placed;
       result.reason = outcome.reason;
       result.displacement = outcome.displacement;
@@ -239,7 +239,7 @@ struct Environment::State {
   void look() {
     std::ranges::fill(heights, 0.0F);
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-      boxes[i].X_TP = happening.it->pose_of(placed[i]);
+      boxes[i].X_TP = placer.it->pose_of(placed[i]);
       raise(boxes[i]);
     }
     finder.reset(boxes);
@@ -266,7 +266,7 @@ struct Environment::State {
   double count() {
     double volume = 0.0;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-      if (!happening.it || happening.it->is_packed(placed[i])) volume += boxes[i].item.size.prod();
+      if (!placer.it || placer.it->is_packed(placed[i])) volume += boxes[i].item.size.prod();
     }
     const double before = packed;
     packed = volume / container.inner_size.prod();
@@ -287,7 +287,7 @@ struct Environment::State {
   std::vector<int> placed;  ///< items of `boxes`
   std::vector<packing::Place> candidates;
   std::vector<float> heights;
-  Clonable happening;
+  Clonable placer;
   int next = 0;
   int steps = 0;
   double packed = 0.0;  ///< part of the container's volume
@@ -370,7 +370,7 @@ bool Environment::has_ended() const { return state_->has_ended; }
 const std::vector<packing::Place>& Environment::candidates() const { return state_->candidates; }
 const std::vector<packing::PlacedBox>& Environment::boxes() const { return state_->boxes; }
 double Environment::packed_percent() const { return 100.0 * state_->packed; }
-double Environment::time() const { return state_->happening.it ? state_->happening.it->time() : 0.0; }
+double Environment::time() const { return state_->placer.it ? state_->placer.it->time() : 0.0; }
 
 std::uint64_t Environment::hash() const {
   Hash hash;
@@ -379,7 +379,7 @@ std::uint64_t Environment::hash() const {
     for (int i = 0; i < 9; ++i) hash.add(box.X_TP.R(i / 3, i % 3));
   }
   hash.add(static_cast<std::uint64_t>(state_->next));
-  if (state_->happening.it) hash.add(state_->happening.it->hash());
+  if (state_->placer.it) hash.add(state_->placer.it->hash());
   return hash.value();
 }
 

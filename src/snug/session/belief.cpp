@@ -190,7 +190,7 @@ void Belief::expect_on_the_way(model::ItemIndex item, const Pose& X_WP) {
 }
 
 void Belief::forget_let_go() {
-  const model::ItemIndex item = std::exchange(let_go_, model::ItemIndex());
+  const model::ItemIndex item = std::exchange(released_, model::ItemIndex());
   if (item.is_valid() && box(item) && !box(item)->was_seen) forget(item);
 }
 

@@ -62,7 +62,7 @@ class Belief {
   /// The motion that was expected ended early: what the next observation does not see is believed to be where it was.
   void doubt_prediction() { is_prediction_sound_ = false; }
   /// It fell, or is let go, before its motion ended: where the next observation does not see it, it could be anywhere.
-  void let_go(model::ItemIndex item) { let_go_ = item; }
+  void let_go(model::ItemIndex item) { released_ = item; }
   /// After an observation.
   void forget_let_go();
   /// Boxes are stiffer than was believed, in every world: BeliefParams::stiffer.
@@ -86,7 +86,7 @@ class Belief {
   ObstacleMemory obstacles_;
   bool is_prediction_new_ = false;    ///< something was expected since the last observation
   bool is_prediction_sound_ = false;  ///< the motion that it is of was not broken off
-  model::ItemIndex let_go_;
+  model::ItemIndex released_;
   Rng rng_;
 };
 

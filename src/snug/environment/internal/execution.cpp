@@ -3,7 +3,7 @@
 
 #include "snug/cell/aligner_feed.hpp"
 #include "snug/cell/simulation.hpp"
-#include "snug/environment/internal/happening.hpp"
+#include "snug/environment/internal/placer.hpp"
 #include "snug/motion/program_csv.hpp"
 #include "snug/skills/highest_fixed_point.hpp"
 #include "snug/skills/placements.hpp"
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kLongestPlacement = 300.0;  ///< s, simulated
 
-class Execution final : public Happening {
+class Execution final : public Placer {
  public:
   explicit Execution(const Episode& episode)
       : simulation_(
@@ -28,7 +28,7 @@ class Execution final : public Happening {
     plan_.X_WE_home = simulation_->scenario().controller.X_WE_start;
   }
   Execution(const Execution& other)
-      : Happening(other),
+      : Placer(other),
         simulation_(other.simulation_),
         settings_(other.settings_),
         container_(other.container_),
@@ -38,7 +38,7 @@ class Execution final : public Happening {
         program_(other.program_) {}
   Execution& operator=(const Execution&) = delete;
 
-  [[nodiscard]] std::unique_ptr<Happening> clone() const override { return std::make_unique<Execution>(*this); }
+  [[nodiscard]] std::unique_ptr<Placer> clone() const override { return std::make_unique<Execution>(*this); }
 
   [[nodiscard]] Outcome place(int index, const packing::Place& place,
                               const std::vector<packing::PlacedBox>& boxes) override {
@@ -112,6 +112,6 @@ class Execution final : public Happening {
 
 }  // namespace
 
-std::unique_ptr<Happening> make_execution(const Episode& episode) { return std::make_unique<Execution>(episode); }
+std::unique_ptr<Placer> make_execution(const Episode& episode) { return std::make_unique<Execution>(episode); }
 
 }  // namespace snug::environment::internal

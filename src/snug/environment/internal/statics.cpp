@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "snug/cell/item_event_log.hpp"
-#include "snug/environment/internal/happening.hpp"
+#include "snug/environment/internal/placer.hpp"
 
 namespace snug::environment::internal {
 namespace {
@@ -29,17 +29,17 @@ std::shared_ptr<const StaticCell> make_cell(const Episode& episode) {
   return cell;
 }
 
-class Statics final : public Happening {
+class Statics final : public Placer {
  public:
   explicit Statics(const Episode& episode)
       : cell_(make_cell(episode)),
         state_(cell::make_initial_state(cell_->scenario, cell_->world)),
         work_(cell_->world.model) {}
   Statics(const Statics& other)
-      : Happening(other), cell_(other.cell_), state_(other.state_), work_(cell_->world.model), placed_(other.placed_) {}
+      : Placer(other), cell_(other.cell_), state_(other.state_), work_(cell_->world.model), placed_(other.placed_) {}
   Statics& operator=(const Statics&) = delete;
 
-  [[nodiscard]] std::unique_ptr<Happening> clone() const override { return std::make_unique<Statics>(*this); }
+  [[nodiscard]] std::unique_ptr<Placer> clone() const override { return std::make_unique<Statics>(*this); }
 
   [[nodiscard]] Outcome place(int index, const packing::Place& place,
                               const std::vector<packing::PlacedBox>& /*boxes*/) override {
@@ -94,7 +94,7 @@ class Statics final : public Happening {
 
 }  // namespace
 
-std::unique_ptr<Happening> make_statics(const Episode& episode) { return std::make_unique<Statics>(episode); }
+std::unique_ptr<Placer> make_statics(const Episode& episode) { return std::make_unique<Statics>(episode); }
 
 bool is_inside(const Vector3& size, const Pose& X_TP, const model::Container& container) {
   const Vector3 reach = 0.5 * (X_TP.R.cwiseAbs() * size);

@@ -154,7 +154,7 @@ TEST(PacedSegment, KeepsItsLimitsAndMeetsBothEnds) {
   }
 }
 
-TEST(PacedSegment, HeedsWhatElseLimitsIt) {
+TEST(PacedSegment, KeepsToWhatElseLimitsIt) {
   const Pose X_WB{Matrix3::Identity(), Vector3(1.0, 0.0, 0.0)};
   const Pace pace{2.0, 5.0, 2.0, 5.0, 0.1};
   const HalfInTheMiddle others;

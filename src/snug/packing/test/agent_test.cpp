@@ -203,7 +203,7 @@ TEST_P(EveryAgent, PassesOnWhatAReachFunctionThrowsAtAnyNumberOfThreads) {
   }
 }
 
-TEST(NoPlace, IsHopelessWhereAnEmptyContainerWouldNotHelp) {
+TEST(NoPlace, IsInfeasibleWhereAnEmptyContainerWouldNotHelp) {
   for (const NoPlace reason : {NoPlace::TooBig, NoPlace::TooHeavy, NoPlace::NotPickable}) {
     EXPECT_TRUE(is_infeasible(reason)) << describe(reason);
   }

@@ -75,7 +75,7 @@ TEST(RemoteAgent, MaySayThatThereIsNoPlace) {
   EXPECT_EQ(decide(R"({"places": [{"x": 5.0, "y": 0.0}]})").error(), NoPlace::NoSpace);
 }
 
-TEST(RemoteAgent, IsNotAskedForWhatIsHopeless) {
+TEST(RemoteAgent, IsNotAskedForWhatIsInfeasible) {
   const auto decision = answering("not asked")->decide(ContainerState{}, make_box("a", Vector3(2.0, 2.0, 2.0)));
   EXPECT_EQ(decision.error(), NoPlace::TooBig);
 }

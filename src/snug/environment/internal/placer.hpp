@@ -1,4 +1,4 @@
-// Happening: what becomes of a box that an action puts somewhere, in statics or executed by the tool.
+// Placer: what becomes of a box that an action puts somewhere, in statics or executed by the tool.
 #pragma once
 
 #include <memory>
@@ -23,10 +23,10 @@ struct Episode {
 };
 
 /// The physical side of an episode.
-class Happening {
+class Placer {
  public:
-  virtual ~Happening() = default;
-  [[nodiscard]] virtual std::unique_ptr<Happening> clone() const = 0;
+  virtual ~Placer() = default;
+  [[nodiscard]] virtual std::unique_ptr<Placer> clone() const = 0;
   /// Puts item `index` of the episode to a place; `boxes`: all others that stand there, in T.
   [[nodiscard]] virtual Outcome place(int index, const packing::Place& place,
                                       const std::vector<packing::PlacedBox>& boxes) = 0;
@@ -38,8 +38,8 @@ class Happening {
   [[nodiscard]] virtual std::uint64_t hash() const = 0;
 };
 
-[[nodiscard]] std::unique_ptr<Happening> make_statics(const Episode& episode);
-[[nodiscard]] std::unique_ptr<Happening> make_execution(const Episode& episode);
+[[nodiscard]] std::unique_ptr<Placer> make_statics(const Episode& episode);
+[[nodiscard]] std::unique_ptr<Placer> make_execution(const Episode& episode);
 
 /// Tolerances are those of a run's result (cell/item_event_log.hpp). `size`: m, as measured.
 [[nodiscard]] bool is_inside(const Vector3& size, const Pose& X_TP, const model::Container& container);
