@@ -265,7 +265,7 @@ class Robot(unittest.TestCase):
         path, out = self.write("far.csv", self.NEAR + self.FAR), self.folder / "far.yaml"
         result = snug("export", path, "--scenario", CELL, "--format", "ros-trajectory", "-o", out)
         self.assertEqual(result.returncode, 1)
-        self.assertIn("row 2", result.stderr)
+        self.assertIn("waypoint 2", result.stderr)
         self.assertFalse(out.exists())
 
 

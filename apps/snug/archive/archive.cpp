@@ -1,21 +1,39 @@
 // archive: what is in archives of measurements, whether they are whole, and archives from parts.
-#include "apps/snug/archive/archive.hpp"
+#include "apps/snug/command_line/verbs.hpp"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
+#include "apps/snug/command_line/verb.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/record/archive.hpp"
 #include "snug/validation/log_table.hpp"
 
 namespace snug::app {
 namespace {
+
+struct ArchiveListOptions {
+  std::string archive;
+  bool json = false;
+};
+struct ArchiveConvertOptions {
+  std::string input;
+  std::string output;  ///< a folder for an archive's tables, a .h5 for a log
+  std::string name;    ///< of the recording a log becomes; the log's own unless given
+  std::string note, sequence;
+};
+struct ArchiveMergeOptions {
+  std::vector<std::string> archives;
+  std::string output;
+};
 
 using Json = nlohmann::ordered_json;
 using record::ArchiveRecording;
@@ -69,8 +87,6 @@ std::string recording_as_text(const ArchiveRecording& recording) {
     text += fmt::format("    {:<20} tracked {:5.1f} %\n", track.name, tracked_percent(track));
   return text;
 }
-
-}  // namespace
 
 int run_archive_list(const ArchiveListOptions& options) {
   const record::ArchiveReader reader(options.archive);
@@ -156,6 +172,54 @@ int run_archive_merge(const ArchiveMergeOptions& options) {
   }
   writer.close();
   return kSuccess;
+}
+
+void add_reading(const Verb& verb, const char* name, const char* description, const char* footer,
+                 int (*run)(const ArchiveListOptions&)) {
+  const Verb part = verb.part(name, description, footer);
+  ArchiveListOptions& options = part.runs(run);
+  part.option("archive", options.archive, "ARCHIVE.h5", "an archive").required();
+  add_json(part, options.json);
+}
+
+void add_convert(const Verb& verb) {
+  const Verb part =
+      verb.part("convert", "an archive into tables, or a log into an archive",
+                "Each source of an archive becomes a table of its own, as each has a clock of its own.\nExamples:\n  "
+                "snug archive convert measured.h5 -o tables\n  snug export run.h5 --format csv -o log.csv\n  snug "
+                "archive convert log.csv --name Rec_20230511T093000Z --sequence 1 -o one.h5");
+  ArchiveConvertOptions& options = part.runs(run_archive_convert);
+  part.option("input", options.input, "ARCHIVE.h5|LOG.csv", "an archive, or a log with the column names of mc_rtc")
+      .required();
+  part.option("-o,--output", options.output, "FOLDER|FILE.h5", "folder for the tables (made if needed), or the archive")
+      .required();
+  part.option("--name", options.name, "NAME", "of the recording that a log becomes; else the log's file name");
+  part.option("--note", options.note, "TEXT", "what to remark about the recording that a log becomes");
+  part.option("--sequence", options.sequence, "NAME", "item sequence of the recording that a log becomes");
+}
+
+void add_merge(const Verb& verb) {
+  const Verb part = verb.part(
+      "merge", "several archives into one: the repetitions of a sequence",
+      "Recordings keep their names and remarks. Two of one name, of two sequences, or with another mass or size of "
+      "the\nsame body are refused.\nExamples:\n  snug measure run.h5 --sensors scenarios/sensors/demonstrator.yaml -o "
+      "first.h5\n  snug measure again.h5 --sensors scenarios/sensors/demonstrator.yaml --date 20000102T000000Z -o "
+      "second.h5\n  snug archive merge first.h5 second.h5 -o sequence-1.h5");
+  ArchiveMergeOptions& options = part.runs(run_archive_merge);
+  part.option("archives", options.archives, "ARCHIVE.h5", "two or more").required().expected(2, 100);
+  part.option("-o,--output", options.output, "FILE.h5", "the archive to write").required();
+}
+
+}  // namespace
+
+void add_archive(CLI::App& app, Action& action) {
+  const Verb verb(app, action, "archive", "archives of measurements: what is in them, are they whole");
+  add_reading(verb, "list", "recordings, sources, bodies and how much of them was tracked",
+              "Example:\n  snug archive list measured.h5 --json", run_archive_list);
+  add_reading(verb, "check", "read everything; tell each defect with its path and index; exit code 2 if there is one",
+              "Example:\n  snug archive check measured.h5", run_archive_check);
+  add_convert(verb);
+  add_merge(verb);
 }
 
 }  // namespace snug::app

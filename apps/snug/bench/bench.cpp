@@ -1,18 +1,22 @@
-// bench: runs the bench scenes, prints every figure beside its target.
-#include "apps/snug/bench/bench.hpp"
+// bench: how fast and how accurate the physics is, beside its targets.
+#include "apps/snug/command_line/verbs.hpp"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
+#include <string>
 
 #include "apps/bench/bench.hpp"
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/ranges.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/shipped.hpp"
+#include "apps/snug/command_line/verb.hpp"
 #include "apps/snug/study/study.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/study/row_values.hpp"
@@ -20,6 +24,12 @@
 
 namespace snug::app {
 namespace {
+
+struct BenchOptions {
+  bool json = false;
+  std::optional<std::string> only;  ///< run the scenes whose figures start with this
+  int drops = 40;                   ///< random drops
+};
 
 /// Where the scenario files are: under the present folder, or with the program.
 std::filesystem::path find_scenarios() {
@@ -93,8 +103,6 @@ std::vector<bench::Figure> run_scenes(const std::vector<std::string>& scenes, co
   return figures;
 }
 
-}  // namespace
-
 int run_bench(const BenchOptions& options) {
   bench::BenchOptions bench;
   const std::filesystem::path scenarios = find_scenarios();
@@ -119,6 +127,21 @@ int run_bench(const BenchOptions& options) {
   print(options.json ? as_json(figures) : as_table(figures));
   const bool all_met = std::all_of(figures.begin(), figures.end(), [](const auto& figure) { return figure.ok; });
   return all_met ? kSuccess : kRunFailed;
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, Action& action) {
+  const Verb verb(
+      app, action, "bench", "measure speed and accuracy, beside their targets",
+      "Examples:\n  snug bench\n  snug bench --json --only s1\n  snug bench camera\n  snug bench --only packing\n  "
+      "snug bench --only identification\n  snug bench piles\n  snug bench heaps.3000\n  snug bench drops --drops 1000");
+  BenchOptions& options = verb.runs(run_bench);
+  add_json(verb, options.json);
+  verb.option("--only", options.only, "NAME", "only figures whose name starts so, such as s3");
+  verb.option("figures", options.only, "NAME", "the same as --only").excludes({"--only"});
+  verb.option("--drops", options.drops, "N", "random drops to run for the figures drops.*; a thousand take minutes",
+              whole(4, kMostThings));
 }
 
 }  // namespace snug::app

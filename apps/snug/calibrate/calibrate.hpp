@@ -1,12 +1,12 @@
 // calibrate: what measurements say about the arm, its tool and its sensor, written where scenarios read it.
 #pragma once
 
-#include <array>
+#include <filesystem>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "apps/snug/command_line/verb.hpp"
+#include "snug/robot/arm.hpp"
 
 namespace snug::app {
 
@@ -18,40 +18,23 @@ struct CalibrateOptions {
   bool json = false;
 };
 
-struct CalibrateKinematicsOptions : CalibrateOptions {
-  std::optional<std::string> deltas;
-  std::optional<std::string> yaml;
-  std::optional<std::string> poses;
-  std::string angles = "urdf";
-  std::string base = "base";  ///< link that poses are measured in
-  std::string end = "tool0";  ///< link that is measured
-  std::optional<std::string> yaml_output;
+/// --urdf, --tool-frame, -o (`output` says what that is) and --json.
+void add_arm_options(const Verb& part, CalibrateOptions& options, const char* output);
+
+struct NominalArm {
+  std::filesystem::path path;
+  robot::ArmModel arm;
+  std::filesystem::path out_folder;  ///< of the URDF to be written
 };
 
-struct CalibrateToolOptions : CalibrateOptions {
-  std::string input;
-  std::string flange = "tool0";                 ///< link whose poses are given
-  std::vector<double> tip_in_tool = {0, 0, 0};  ///< m, tip of the cone in E
-};
+[[nodiscard]] NominalArm load_nominal(const CalibrateOptions& options);
+/// Index of a link; InputError that names the option and the nearest link.
+[[nodiscard]] int require_link(const robot::ArmModel& arm, const std::string& option, const std::string& name);
 
-struct CalibrateSensorOptions : CalibrateOptions {
-  std::string input;
-  std::string sensor = "ft_sensor";
-  std::optional<double> mass;  ///< kg
-};
-
-struct CalibrateCameraOptions {
-  std::string input;
-  std::optional<std::string> output;  ///< block for a scenario (YAML)
-  std::string name = "tote";
-  std::string preset = "structured_light";
-  bool json = false;
-};
-
-void add_calibrate(CLI::App& app, Action& action);
-[[nodiscard]] int run_calibrate_kinematics(const CalibrateKinematicsOptions& options);
-[[nodiscard]] int run_calibrate_camera(const CalibrateCameraOptions& options);
-[[nodiscard]] int run_calibrate_tool(const CalibrateToolOptions& options);
-[[nodiscard]] int run_calibrate_sensor(const CalibrateSensorOptions& options);
+/// The parts of the verb.
+void add_calibrate_kinematics(const Verb& verb);
+void add_calibrate_tool(const Verb& verb);
+void add_calibrate_sensor(const Verb& verb);
+void add_calibrate_camera(const Verb& verb);
 
 }  // namespace snug::app

@@ -8,11 +8,20 @@
 #include "apps/snug/calibrate/calibrate.hpp"
 #include "apps/snug/command_line/as_list.hpp"
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
 #include "snug/calibration/hand_eye.hpp"
 #include "snug/core/write_file.hpp"
 
 namespace snug::app {
 namespace {
+
+struct CalibrateCameraOptions {
+  std::string input;
+  std::optional<std::string> output;  ///< block for a scenario (YAML)
+  std::string name = "tote";
+  std::string preset = "structured_light";
+  bool json = false;
+};
 
 using nlohmann::ordered_json;
 
@@ -54,8 +63,6 @@ std::string line(const char* what, const Pose& X, const Matrix6& covariance) {
       turn.z(), sd(3), sd(4), sd(5));
 }
 
-}  // namespace
-
 int run_calibrate_camera(const CalibrateCameraOptions& options) {
   std::optional<OutputFile> output = reserve({{"the input", options.input}}, options.output);
   const Table table = load_table(options.input, calibration::hand_eye_columns());
@@ -74,6 +81,27 @@ int run_calibrate_camera(const CalibrateCameraOptions& options) {
         fmt::format("noise of a measured pose {:.3f} mm, {:.3f} mrad; {} rows\n", 1e3 * found.position_noise,
                     1e3 * found.angle_noise, table.rows.size()));
   return kSuccess;
+}
+
+constexpr const char* kCameraPosesHelp =
+    R"(The CSV has a header x,y,z,rx,ry,rz,cx,cy,cz,crx,cry,crz: pose of the tool in the world, and pose in the camera of what the
+tool holds: a board, or a box that `snug perceive` measured (m; rotation vectors in rad). Four rows or more, the tool turned about two
+axes at least. What is held need not be known where it sits: that is found too.
+Examples:
+  snug calibrate camera scenarios/examples/board.csv
+  snug calibrate camera scenarios/examples/board.csv --name tote -o camera.yaml --json)";
+
+}  // namespace
+
+void add_calibrate_camera(const Verb& verb) {
+  const Verb part = verb.part("camera", "where a camera is that stands in the cell (hand-eye)", kCameraPosesHelp);
+  CalibrateCameraOptions& options = part.runs(run_calibrate_camera);
+  part.option("poses", options.input, "FILE.csv", "of the tool, and of what it holds as the camera sees it").required();
+  part.option("--name", options.name, "NAME", "of the camera in what is written");
+  part.option("--preset", options.preset, "NAME", "of the camera in what is written",
+              one_of({"structured_light", "active_stereo", "ideal"}));
+  part.option("-o,--output", options.output, "FILE.yaml", "block for a scenario: pose and hand-eye error");
+  add_json(part, options.json);
 }
 
 }  // namespace snug::app

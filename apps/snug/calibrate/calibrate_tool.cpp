@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/snug/calibrate/calibrate.hpp"
-#include "apps/snug/calibrate/calibrate_files.hpp"
 #include "apps/snug/command_line/outputs.hpp"
 #include "snug/calibration/exact_arm.hpp"
 #include "snug/calibration/force_sensor.hpp"
@@ -16,6 +15,18 @@
 
 namespace snug::app {
 namespace {
+
+struct CalibrateToolOptions : CalibrateOptions {
+  std::string input;
+  std::string flange = "tool0";                 ///< link whose poses are given
+  std::vector<double> tip_in_tool = {0, 0, 0};  ///< m, tip of the cone in E
+};
+
+struct CalibrateSensorOptions : CalibrateOptions {
+  std::string input;
+  std::string sensor = "ft_sensor";
+  std::optional<double> mass;  ///< kg
+};
 
 using nlohmann::ordered_json;
 
@@ -38,8 +49,6 @@ std::string note_of(const std::string& what, const std::string& input, const Nom
   return "Calibrated: " + what + " from " + std::filesystem::path(input).filename().string() + ", all else from " +
          nominal.path.filename().string();
 }
-
-}  // namespace
 
 int run_calibrate_tool(const CalibrateToolOptions& options) {
   for (const double value : options.tip_in_tool)
@@ -125,6 +134,43 @@ int run_calibrate_sensor(const CalibrateSensorOptions& options) {
   std::printf("for a scenario: sensor: {force_noise: %.4g, torque_noise: %.4g, force_bias: %s, torque_bias: %s}\n",
               fit.force_noise, fit.torque_noise, list(fit.force_offset).c_str(), list(fit.torque_offset).c_str());
   return kSuccess;
+}
+
+constexpr const char* kToolHelp =
+    R"(The CSV has a header x,y,z,rx,ry,rz (m; rotation vector in rad) and one row for each touch of one and the same point
+with the tip, the tool turned differently each time; four or more.
+Examples:
+  snug calibrate tool scenarios/examples/touches.csv
+  snug calibrate tool scenarios/examples/touches.csv --tip-in-tool 0 0 0.05 -o ur10-bent.urdf --json)";
+
+constexpr const char* kSensorHelp =
+    R"(The CSV has a header rx,ry,rz,fx,fy,fz,tx,ty,tz: orientation of the sensor's frame in the world (rotation vector, rad)
+and its reading at rest (N, Nm; a hanging load pulls along gravity). Four or more orientations, each axis up and down.
+Only ratios of mass and scales show: without --mass the scales have the geometric mean 1.
+Examples:
+  snug calibrate ft scenarios/examples/readings.csv
+  snug calibrate ft scenarios/examples/readings.csv --mass 1.02 -o ur10-weighed.urdf --json)";
+
+}  // namespace
+
+void add_calibrate_tool(const Verb& verb) {
+  const Verb part = verb.part("tool", "where the tip of the tool is", kToolHelp);
+  CalibrateToolOptions& options = part.runs(run_calibrate_tool);
+  part.option("touches", options.input, "FILE.csv", "poses of the flange").required();
+  part.option("--flange", options.flange, "LINK", "link whose poses are given");
+  part.option("--tip-in-tool", options.tip_in_tool, "X Y Z",
+              "where the tip is in the tool's frame, when a cone is mounted there")
+      .expected(3);
+  add_arm_options(part, options, "the arm with its tool frame moved to the tip");
+}
+
+void add_calibrate_sensor(const Verb& verb) {
+  const Verb part = verb.part("ft", "offsets and scales of the force/torque sensor, and its load", kSensorHelp);
+  CalibrateSensorOptions& options = part.runs(run_calibrate_sensor);
+  part.option("readings", options.input, "FILE.csv", "readings at rest").required();
+  part.option("--mass", options.mass, "KG", "of the load, when it was weighed", positive());
+  part.option("--sensor", options.sensor, "LINK", "link in whose frame is measured");
+  add_arm_options(part, options, "the arm with this load behind the sensor");
 }
 
 }  // namespace snug::app

@@ -1,5 +1,7 @@
 // camera: a recording's bodies in the camera's picture, written with what is true of it.
 #include "apps/snug/camera/camera.hpp"
+#include "apps/snug/command_line/ranges.hpp"
+#include "apps/snug/command_line/verbs.hpp"
 
 #include <fmt/format.h>
 
@@ -9,9 +11,10 @@
 
 #include "apps/snug/camera/live_view.hpp"
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/shipped.hpp"
 #include "apps/snug/common/choose_camera.hpp"
-#include "apps/snug/common/recorded_instant.hpp"
+#include "apps/snug/common/recordings.hpp"
 #include "snug/camera/frame_file.hpp"
 #include "snug/camera/render.hpp"
 #include "snug/core/input_error.hpp"
@@ -89,8 +92,6 @@ CameraView look_at_recording(const CameraOptions& options) {
   return view;
 }
 
-}  // namespace
-
 int run_camera(const CameraOptions& options) {
   const fs::path output = options.output;
   const std::string ending = output.extension().string();
@@ -137,6 +138,47 @@ int run_camera(const CameraOptions& options) {
     print(fmt::format("{}: {} points of {} pixels at {:.3f} s, {}\n", options.output, truth["points"].get<int>(),
                       params.width * params.height, view.time, params.name));
   return kSuccess;
+}
+
+constexpr const char* kCameraExamples = R"(What is written goes by the ending of FILE:
+  .png  depth, 16-bit grey in steps of 0.1 mm; beside it FILE-intensity.png, FILE-labels.png and FILE-truth.json
+  .ply  points in the world with intensity, row, column and label; beside it FILE-truth.json
+  .h5   depth, intensity, and the truth: depth, labels, poses
+The truth is what nobody measures: poses and labels of the bodies, and where the camera really is. docs/camera.md has the errors.
+Examples:
+  snug camera run.h5 --time 20 -o frame.png
+  snug camera run.h5 --time 20 --camera tote --seed 3 --shot 2 -o frame.h5
+  snug camera run.h5 --scenario scenarios/box-demonstrator.yaml -o frame.ply   # with the cameras of another scenario
+With --click ADDRESS, and a scenario instead of a recording, the cell is one that `snug serve` serves now: the camera of a simulated cell, as a
+program of its own (docs/camera.md).)";
+
+}  // namespace
+
+void add_camera(CLI::App& app, Action& action) {
+  const Verb verb(app, action, "camera", "what a depth camera of the cell sees at an instant of a recording, or now",
+                  kCameraExamples);
+  CameraOptions& options = verb.runs(run_camera);
+  verb.option("recording", options.recording, "FILE.h5|SCENARIO.yaml",
+              "of a run; with --click the scenario that is served")
+      .required();
+  verb.option("-o,--output", options.output, "FILE", "the frame to write: .png, .ply or .h5").required();
+  const OptionRow time = verb.option("--time", options.time, "SECONDS", "of the instant; without it the end", finite());
+  const OptionRow click = verb.option("--click", options.click, "ADDRESS",
+                                      "look at the cell that is served at this address, beside its controller")
+                              .excludes(time);
+  verb.option("--sequence", options.sequence, "NAME", "of a served cell; without it the first").needs(click);
+  add_scenario_changes(verb, options.changes);
+  for (const OptionRow& row : add_client(verb, options.client, "--timeout")) row.needs(click);
+  verb.flag("--without-robot", options.without_robot, "of a served cell: the robot is out of the view").needs(click);
+  verb.option("--camera", options.camera, "NAME", "name in the scenario; without it the first");
+  verb.option("--scenario", options.scenario, "FILE.yaml", "with the camera, where the recording's own has none")
+      .excludes(click);
+  verb.option("--seed", options.seed, "N", "of the errors that stay with a camera; without it the recording's",
+              whole(0));
+  verb.option("--shot", options.shot, "N", "number of the frame: its noise", whole(0));
+  verb.option("--threads", options.threads, "N", "at work; the frame does not depend on it", whole(1, kMostThreads));
+  verb.flag("--exact", options.exact, "without errors");
+  add_json(verb, options.json);
 }
 
 }  // namespace snug::app

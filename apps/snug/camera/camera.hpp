@@ -7,6 +7,7 @@
 #include <string>
 
 #include "apps/snug/command_line/scenario_options.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/verb.hpp"
 
 namespace snug::app {
@@ -20,8 +21,7 @@ struct CameraOptions {
   std::optional<std::string> click;     ///< address of a served cell
   std::optional<std::string> sequence;  ///< of a served cell; absent: the first
   ScenarioChanges changes;              ///< with which it is served
-  std::optional<std::string> keys;      ///< by which this program is known there
-  double patience = 10.0;               ///< s, for an answer from there
+  ClientWords client;
   bool without_robot = false;
   std::optional<std::uint64_t> seed;  ///< of the camera's own errors; absent: the recording's
   std::uint64_t shot = 1;
@@ -29,8 +29,5 @@ struct CameraOptions {
   bool exact = false;  ///< without errors
   bool json = false;
 };
-
-void add_camera(CLI::App& app, Action& action);
-[[nodiscard]] int run_camera(const CameraOptions& options);
 
 }  // namespace snug::app

@@ -45,7 +45,7 @@ CameraView look_at_served(const CameraOptions& options) {
   view.scenario = load_changed(options.recording, options.changes);
   if (view.scenario.sequences.empty()) throw InputError(view.scenario.source_name, "sequences", "", "boxes");
   remote_plant::WatchedCell cell(view.scenario, options.sequence.value_or(view.scenario.sequences.front().name),
-                                 *options.click, options.patience, click::find_client_keys(options.keys));
+                                 *options.click, options.client.patience, click::find_client_keys(options.client.keys));
   const std::string trouble = cell.look();
   if (!trouble.empty()) {
     throw InputError("command line", "--click", "'" + *options.click + "'",

@@ -1,9 +1,15 @@
-// check: loads program and scenario, looks at the way, prints what is in it.
-#include "apps/snug/check/check.hpp"
+// check: whether the robot can do a program, and where it can stand at all, before anything moves.
+#include "apps/snug/command_line/verbs.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <string>
 
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/ranges.hpp"
+#include "apps/snug/command_line/scenario_options.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
+#include "apps/snug/command_line/verb.hpp"
 #include "apps/snug/common/robot_warnings.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/read_file.hpp"
@@ -16,6 +22,18 @@
 namespace snug::app {
 namespace {
 
+struct CheckOptions {
+  std::string scenario;
+  ScenarioChanges changes;
+  std::string program;  ///< empty with `maps_reach`
+  bool maps_reach = false;
+  std::optional<std::string> sequence;
+  std::optional<std::string> robot;
+  MotionWords motion;
+  std::string corrections = "none";
+  bool json = false;
+};
+
 /// Whether every pick and something over the container is reached.
 int print_reach(const model::Scenario& scenario, bool as_json) {
   const runs::ReachMap map = runs::make_reach_map(scenario, core_count());
@@ -24,9 +42,9 @@ int print_reach(const model::Scenario& scenario, bool as_json) {
   return map.counts.front() > 0 && std::ranges::all_of(map.picks, is_reached) ? kSuccess : kRunFailed;
 }
 
-}  // namespace
-
 int run_check(const CheckOptions& options) {
+  if (options.program.empty() && !options.maps_reach)
+    throw InputError("command line", "--program, --reach", "none of them", "one");
   const model::Scenario scenario = load_changed(options.scenario, options.changes);
   if (options.maps_reach) {
     print_robot_warnings(scenario);
@@ -42,11 +60,45 @@ int run_check(const CheckOptions& options) {
   print_robot_warnings(scenario);
   const motion::Program read = motion::parse_program(text, options.program);
   if (options.sequence) print_warnings(runs::find_misfits(scenario, *options.sequence, read));
-  const motion::Program program =
-      runs::corrected(scenario, read, options.corrections == "none" ? "" : options.corrections);
+  const motion::Program program = runs::corrected(scenario, read, layer_of(options.corrections));
   const runs::CheckResult result = runs::check_program(scenario, program, check);
   print(options.json ? format_json(result) : format_table(result));
   return result.is_ok ? kSuccess : kRunFailed;
+}
+
+constexpr const char* kCheckExamples =
+    R"(Moves the arm with its controller and limits, as a run does, but with nothing to touch, and checks the whole path:
+reach, joint limits and speeds, singularities, the arm's own links, and links, gripper, cup and held box against
+everything that stands in the cell. Nothing is felt: waypoints of a fast program go to their end; exact is how exported programs are done.
+Margins of collisions are distances, negative inside; what cup and held box may be inside is said beside them. Waypoints
+with one finding stand in one line. Exit code 0: nothing in the way; 1: something is; 2: the input cannot be used.
+With --reach: poses of a grid over the container and those of the picks, each by the same tests; a pose is reached where
+one branch of the arm's inverse passes them, paths are not checked. Exit code 1: a pick is not reached, or no place over
+the container.
+Examples:
+  snug check scenarios/box-demonstrator.yaml --program program.csv --sequence 1
+  snug check scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --controller exact --json
+  snug check scenarios/box-demonstrator.yaml --reach
+  snug check scenarios/box-demonstrator.yaml --reach --set "robot.pose={position: [0.2, 0, 0], yaw_deg: 180}" --json)";
+
+}  // namespace
+
+void add_check(CLI::App& app, Action& action) {
+  const Verb verb(app, action, "check", "say whether the robot can do a program, and what is in the way",
+                  kCheckExamples);
+  CheckOptions& options = verb.runs(run_check);
+  add_robot_scenario(verb, options.scenario);
+  add_scenario_changes(verb, options.changes);
+  const OptionRow program = verb.option("--program", options.program, "FILE.csv", "waypoint file (13 columns)");
+  verb.flag("--reach", options.maps_reach,
+            "instead of a program: where over the container and at the picks the tool can "
+            "stand, pointing down, and what keeps it from the other places; nothing is moved")
+      .excludes(program);
+  verb.option("--sequence", options.sequence, "NAME", "item sequence, to check the held boxes too");
+  verb.option("--robot", options.robot, "NAME", "the scenario's robot; absent: the one there is");
+  add_motion_words(verb, options.motion);
+  add_corrections(verb, options.corrections);
+  add_json(verb, options.json);
 }
 
 }  // namespace snug::app

@@ -1,6 +1,7 @@
 // CommandList: verbs and options as the parser knows them, as plain data.
 #include "apps/snug/command_line/command_list.hpp"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "apps/snug/command_line/options.hpp"

@@ -1,26 +1,37 @@
 // Checks of option values, with messages for people.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
+namespace CLI {
+class Option;
+}
+
 namespace snug::app {
 
+/// Of one word: empty, or what is wrong with it.
+struct Check {
+  std::function<std::string(const std::string&)> find_fault;
+  std::string name;  ///< by which `choices_of` knows it
+  std::string operator()(const std::string& word) const { return find_fault(word); }
+};
+
 /// The word must be one of these; the message lists them and names the nearest.
-[[nodiscard]] CLI::Validator one_of(std::vector<std::string> words);
+[[nodiscard]] Check one_of(std::vector<std::string> words);
 /// The same, or any word with a colon; `other` says in messages what that is.
-[[nodiscard]] CLI::Validator one_of(std::vector<std::string> words, const std::string& other);
+[[nodiscard]] Check one_of(std::vector<std::string> words, const std::string& other);
 /// The words of an option that was checked with `one_of`; else none.
 [[nodiscard]] std::vector<std::string> choices_of(CLI::Option& option);
 /// A finite number above zero.
-[[nodiscard]] CLI::Validator positive();
+[[nodiscard]] Check positive();
 /// A number that is none of inf and nan, such as an instant.
-[[nodiscard]] CLI::Validator finite();
+[[nodiscard]] Check finite();
 /// A whole number that fits into 64 bits, `least` or more.
-[[nodiscard]] CLI::Validator whole(std::uint64_t least);
+[[nodiscard]] Check whole(std::uint64_t least);
 /// A whole number from `least` to `most`.
-[[nodiscard]] CLI::Validator whole(std::uint64_t least, std::uint64_t most);
+[[nodiscard]] Check whole(std::uint64_t least, std::uint64_t most);
 
 }  // namespace snug::app

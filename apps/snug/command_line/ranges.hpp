@@ -11,6 +11,6 @@ inline constexpr std::uint64_t kMostSequences = 1000;    ///< about as many as o
 inline constexpr std::uint64_t kMostThings = 1'000'000;  ///< frames, problems
 
 /// A number from `low` to `high`.
-[[nodiscard]] CLI::Validator within(double low, double high);
+[[nodiscard]] Check within(double low, double high);
 
 }  // namespace snug::app

@@ -12,23 +12,18 @@
 
 namespace snug::app {
 
-void add_scenario_changes(CLI::App& verb, ScenarioChanges& changes) {
-  verb.add_option("--items", changes.items, "more boxes and sequences: orders (.csv, .json) or items (.yaml)")
-      ->type_name("FILE");
-  CLI::Option* container =
-      verb.add_option("--container", changes.container,
-                      "what is packed: another container of the scenario, or an open box of these inner sizes in mm "
-                      "in the place of its target")
-          ->type_name("NAME|LxWxH");
-  verb.add_option("--pallet", changes.pallet,
-                  "pack a slab without walls, sizes in mm, boxes up to H high (default: the depth of the target)")
-      ->type_name("LxW[xH]")
-      ->excludes(container);
-  verb.add_option("--set", changes.set,
-                  "a key of the scenario file with another value, such as cup.lip_radius=0.03 or "
-                  "contacts.pairs.box/container.friction=0.1; may be given several times")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+void add_scenario_changes(const Verb& verb, ScenarioChanges& changes) {
+  verb.option("--items", changes.items, "FILE", "more boxes and sequences: orders (.csv, .json) or items (.yaml)");
+  const OptionRow container = verb.option("--container", changes.container, "NAME|LxWxH",
+                                          "what is packed: another container of the scenario, or an open box of these "
+                                          "inner sizes in mm in the place of its target");
+  verb.option("--pallet", changes.pallet, "LxW[xH]",
+              "pack a slab without walls, sizes in mm, boxes up to H high (default: the depth of the target)")
+      .excludes(container);
+  verb.option("--set", changes.set, "KEY=VALUE",
+              "a key of the scenario file with another value, such as cup.lip_radius=0.03 or "
+              "contacts.pairs.box/container.friction=0.1; may be given several times")
+      .one_each();
 }
 
 OptionWords words_of(const ScenarioChanges& changes) {

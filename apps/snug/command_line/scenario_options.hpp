@@ -22,7 +22,7 @@ struct ScenarioChanges {
 };
 
 /// --items, --container, --pallet and --set.
-void add_scenario_changes(CLI::App& verb, ScenarioChanges& changes);
+void add_scenario_changes(const Verb& verb, ScenarioChanges& changes);
 /// Options with their values, in the order of the words.
 using OptionWords = std::vector<std::pair<std::string, std::string>>;
 /// The words that change a scenario so.

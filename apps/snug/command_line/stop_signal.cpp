@@ -1,9 +1,10 @@
-// StopSignal: Ctrl-C as a call from a thread of its own, so that what goes on ends in order.
+// Ctrl-C ends long work in order: as a flag that is asked, or as a call from a thread of its own.
 #include "apps/snug/command_line/stop_signal.hpp"
 
 #include <semaphore.h>
 #include <signal.h>
 
+#include <csignal>
 #include <utility>
 
 namespace snug::app {
@@ -18,7 +19,21 @@ bool is_ignored(int signal) {
   return ::sigaction(signal, nullptr, &before) == 0 && before.sa_handler == SIG_IGN;
 }
 
+volatile std::sig_atomic_t g_is_interrupted = 0;  // the one thing that a handler may write
+
 }  // namespace
+
+void catch_interrupts() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { g_is_interrupted = 1; };
+  action.sa_flags = static_cast<int>(SA_RESETHAND);  // the second signal does what it always does
+  for (const int signal : kSignals) {
+    if (signal == SIGHUP && is_ignored(signal)) continue;  // nohup stays what it is
+    ::sigaction(signal, &action, nullptr);
+  }
+}
+
+bool is_interrupted() { return g_is_interrupted != 0; }
 
 StopSignal::StopSignal(std::function<void()> stop) {
   ::sem_init(&g_stop, 0, 0);

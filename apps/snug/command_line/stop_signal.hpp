@@ -1,10 +1,15 @@
-// StopSignal: Ctrl-C as a call from a thread of its own, so that what goes on ends in order.
+// Ctrl-C ends long work in order: as a flag that is asked, or as a call from a thread of its own.
 #pragma once
 
 #include <functional>
 #include <thread>
 
 namespace snug::app {
+
+/// From now on the first SIGINT, SIGTERM or SIGHUP only sets a flag: work ends in order, with what is done so far. The
+/// second one ends the program at once.
+void catch_interrupts();
+[[nodiscard]] bool is_interrupted();
 
 /// Waits for SIGINT, SIGTERM or SIGHUP in a thread of its own, so that stopping may lock and wait like any other code.
 /// A handler, as libraries have threads of their own that a blocked signal would be given to. The second Ctrl-C ends

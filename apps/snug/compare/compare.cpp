@@ -1,5 +1,7 @@
 // compare: agents x sequences x plants.
-#include "apps/snug/compare/compare.hpp"
+#include "apps/snug/command_line/ranges.hpp"
+#include "apps/snug/command_line/verbs.hpp"
+#include "apps/snug/compare/compare_study.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -9,13 +11,13 @@
 #include <filesystem>
 #include <sstream>
 
-#include "apps/snug/command_line/interrupt.hpp"
 #include "apps/snug/command_line/outputs.hpp"
-#include "apps/snug/command_line/program_motion.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/shipped.hpp"
+#include "apps/snug/command_line/stop_signal.hpp"
 #include "apps/snug/command_line/version.hpp"
-#include "apps/snug/compare/compare_study.hpp"
-#include "apps/snug/report/report.hpp"
+#include "apps/snug/command_line/viewer_page.hpp"
+#include "apps/snug/common/recordings.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
@@ -120,11 +122,9 @@ class Printer {
 std::string make_report(const study::SessionRow& row) {
   const std::string& recording = row.point.recording;
   if (recording.empty() || row.items_sent == 0 || !std::filesystem::exists(recording)) return {};
-  ReportOptions report;
-  report.recordings = {recording};
-  report.output = std::filesystem::path(recording).replace_extension(".html").string();
-  (void)run_report(report);
-  return report.output;
+  std::string page = std::filesystem::path(recording).replace_extension(".html").string();
+  write_file(OutputFile(page), report::assemble_page(viewer_page(), encode_recordings({recording}, {}, {})));
+  return page;
 }
 
 /// What went wrong, on standard error; the exit code.
@@ -180,8 +180,6 @@ std::optional<study::Folder> open_folder(const CompareOptions& options, const st
   return folder;
 }
 
-}  // namespace
-
 int run_compare(const CompareOptions& options) {
   SourcedScenario loaded = load_with_sources(options.pack.scenario, options.pack.changes);
   model::Scenario& scenario = loaded.scenario;
@@ -228,6 +226,44 @@ int run_compare(const CompareOptions& options) {
   const bool is_own_container = !options.pack.changes.container && !options.pack.changes.pallet;
   print_now(study::format_compare_end(form, scenario, rows, is_own_container));
   return say_end(rows, points.size(), summary.left_out);
+}
+
+constexpr const char* kCompareExamples = R"(Examples:
+  snug compare scenarios/box-demonstrator.yaml --agents contact-aware --plants 6 -o compare.html --runs runs
+  snug compare scenarios/box-demonstrator.yaml --sequences 1,3 --agents margin,contact-aware --json
+  snug compare scenarios/box-demonstrator.yaml --decision-time 0.2 --plants 3 --csv > rows.csv
+  snug compare scenarios/box-demonstrator.yaml --random 50 --agents contact-aware --dir random
+  snug compare scenarios/box-demonstrator.yaml --container 400x300x200 --agents contact-aware)";
+
+}  // namespace
+
+void add_compare(CLI::App& app, Action& action) {
+  const Verb verb(app, action, "compare", "agents x sequences x plants: filling, items lost, recoveries",
+                  kCompareExamples);
+  CompareOptions& options = verb.runs(run_compare);
+  add_scenario(verb, options.pack.scenario);
+  verb.option("--sequences", options.sequences, "NAMES",
+              "all, or names separated by commas (default: all; with --random none but the random ones)");
+  const OptionRow random = verb.option("--random", options.random, "N",
+                                       "so many more sequences, random-1, ...: every box of the scenario in random "
+                                       "order; each is packed in plants of its own",
+                                       whole(1, 10000));
+  verb.option("--random-seed", options.random_seed, "N", "seed of their order", whole(0)).needs(random);
+  verb.option("--agents", options.agents, "NAMES",
+              "all built-in ones, or names separated by commas, module:Class of Python among them");
+  verb.option("--plants", options.plants, "N",
+              "plants that every agent packs with every sequence: the seed --plant-seed and those after it",
+              whole(1, kMostRuns));
+  add_packing_options(verb, options.pack);
+  const OptionRow json = verb.flag("--json", options.json, "print rows as JSON");
+  verb.flag("--csv", options.csv, "print rows as CSV").excludes(json);
+  verb.option("-o,--output", options.page, "FILE.html",
+              "page: charts by agent, sequence and plant, each container from above, the words that repeat each run");
+  verb.option("--runs", options.runs, "DIR",
+              "leave a recording and its report page of every session in this folder; the page of -o links to them");
+  verb.option("--dir", options.dir, "DIR",
+              "keep every row in this folder: the same words go on after a kill; DIR/study.yaml is the comparison as a "
+              "study (snug study status|merge|report)");
 }
 
 }  // namespace snug::app

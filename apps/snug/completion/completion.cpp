@@ -1,13 +1,11 @@
 // completion: a script that lets a shell complete the words of `snug`, made from the parser's own list of them.
-#include "apps/snug/completion/completion.hpp"
+#include "apps/snug/command_line/verbs.hpp"
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
 #include <algorithm>
-#include <memory>
 
+#include "apps/snug/command_line/command_list.hpp"
 #include "apps/snug/command_line/options.hpp"
 #include "apps/snug/command_line/outputs.hpp"
 
@@ -26,7 +24,7 @@ std::string joined(const std::vector<std::string>& words, const std::string& bet
 }
 
 /// In single quotes, as all three shells read them.
-std::string quoted(const std::string& text) {
+std::string shell_quoted(const std::string& text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? std::string("'\"'\"'") : std::string(1, c);
   return result + "'";
@@ -45,7 +43,7 @@ std::vector<std::string> verb_steps(const std::vector<Command>& commands) {
 
 std::string quoted_steps(const std::vector<Command>& commands, const std::string& between) {
   std::string text;
-  for (const std::string& step : verb_steps(commands)) text += (text.empty() ? "" : between) + quoted(step);
+  for (const std::string& step : verb_steps(commands)) text += (text.empty() ? "" : between) + shell_quoted(step);
   return text;
 }
 
@@ -79,19 +77,17 @@ std::string zsh_value(const CommandOption& option) {
 }
 
 std::string zsh_argument(const CommandOption& option) {
-  if (option.names.empty()) return quoted("*" + zsh_value(option));
+  if (option.names.empty()) return shell_quoted("*" + zsh_value(option));
   const std::string about = "[" + zsh_escaped(option.about) + "]";
-  if (option.names.size() == 1) return quoted("*" + option.names.front() + about + zsh_value(option));
-  return quoted("*") + "{" + joined(option.names, ",") + "}" + quoted(about + zsh_value(option));
+  if (option.names.size() == 1) return shell_quoted("*" + option.names.front() + about + zsh_value(option));
+  return shell_quoted("*") + "{" + joined(option.names, ",") + "}" + shell_quoted(about + zsh_value(option));
 }
-
-}  // namespace
 
 std::string format_bash(const std::vector<Command>& commands) {
   std::string text =
-      "# bash completion for snug, written by `snug completion bash`.\n_snug() {\n"
-      "  local current=\"${COMP_WORDS[COMP_CWORD]}\" before=\"${COMP_WORDS[COMP_CWORD-1]}\" verb=\"\" words=\"\" i\n"
-      "  for ((i = 1; i < COMP_CWORD; i++)); do\n    case \"$verb/${COMP_WORDS[i]}\" in\n";
+      "# bash completion for snug, written by `snug completion bash`.\n_snug() {\n  local "
+      "current=\"${COMP_WORDS[COMP_CWORD]}\" before=\"${COMP_WORDS[COMP_CWORD-1]}\" verb=\"\" words=\"\" i\n  for ((i "
+      "= 1; i < COMP_CWORD; i++)); do\n    case \"$verb/${COMP_WORDS[i]}\" in\n";
   text += fmt::format("      {}) verb=\"${{verb:+$verb }}${{COMP_WORDS[i]}}\" ;;\n", quoted_steps(commands, " | "));
   text += "    esac\n  done\n  COMPREPLY=()\n  case \"$verb|$before\" in\n";
   std::string plain;  // options with a value that cannot be listed
@@ -100,13 +96,13 @@ std::string format_bash(const std::vector<Command>& commands) {
       if (option.value.empty()) continue;
       std::string patterns;
       for (const std::string& name : option.names) {
-        patterns += (patterns.empty() ? "" : " | ") + quoted(joined(command.words) + "|" + name);
+        patterns += (patterns.empty() ? "" : " | ") + shell_quoted(joined(command.words) + "|" + name);
       }
       if (patterns.empty()) continue;
       if (option.choices.empty()) {
         plain += (plain.empty() ? "" : " | ") + patterns;
       } else {
-        text += fmt::format("    {}) words={} ;;\n", patterns, quoted(joined(option.choices)));
+        text += fmt::format("    {}) words={} ;;\n", patterns, shell_quoted(joined(option.choices)));
       }
     }
   }
@@ -117,8 +113,9 @@ std::string format_bash(const std::vector<Command>& commands) {
     std::vector<std::string> names;
     for (const CommandOption& option : command.options)
       names.insert(names.end(), option.names.begin(), option.names.end());
-    text += fmt::format("        {}) [[ $current == -* ]] && words={} || words={} ;;\n", quoted(joined(command.words)),
-                        quoted(joined(names)), quoted(joined(command.verbs)));
+    text += fmt::format("        {}) [[ $current == -* ]] && words={} || words={} ;;\n",
+                        shell_quoted(joined(command.words)), shell_quoted(joined(names)),
+                        shell_quoted(joined(command.verbs)));
   }
   return text + R"(      esac
       ;;
@@ -146,11 +143,11 @@ _snug() {
   case "$verb" in
 )";
   for (const Command& command : commands) {
-    text += fmt::format("    ({})\n", quoted(joined(command.words)));
+    text += fmt::format("    ({})\n", shell_quoted(joined(command.words)));
     if (!command.verbs.empty()) {
       text += "      verbs=(";
       for (const auto& [name, about] : parts_of(commands, command)) {
-        text += "\n        " + quoted(name + ":" + zsh_escaped(about));
+        text += "\n        " + shell_quoted(name + ":" + zsh_escaped(about));
       }
       text += ")\n      [[ $words[CURRENT] == -* ]] || { _describe verb verbs; return }\n";
     }
@@ -169,7 +166,7 @@ function __snug_at
         switch "$verb/$word"
 )";
   text += "            case";
-  for (const std::string& step : verb_steps(commands)) text += " " + quoted(step);
+  for (const std::string& step : verb_steps(commands)) text += " " + shell_quoted(step);
   text += R"(
                 set verb (string trim "$verb $word")
         end
@@ -178,9 +175,10 @@ function __snug_at
 end
 )";
   for (const Command& command : commands) {
-    const std::string at = fmt::format("complete -c snug -n {}", quoted("__snug_at '" + joined(command.words) + "'"));
+    const std::string at =
+        fmt::format("complete -c snug -n {}", shell_quoted("__snug_at '" + joined(command.words) + "'"));
     for (const auto& [name, about] : parts_of(commands, command)) {
-      text += fmt::format("{} -f -a {} -d {}\n", at, name, quoted(about));
+      text += fmt::format("{} -f -a {} -d {}\n", at, name, shell_quoted(about));
     }
     for (const CommandOption& option : command.options) {
       if (option.names.empty()) continue;
@@ -190,33 +188,34 @@ end
         text += (is_long ? " -l " : " -s ") + name.substr(is_long ? 2 : 1);
       }
       if (!option.choices.empty())
-        text += " -x -a " + quoted(joined(option.choices));
+        text += " -x -a " + shell_quoted(joined(option.choices));
       else if (!option.value.empty())
         text += option.takes_file ? " -r -F" : " -x";
-      text += fmt::format(" -d {}\n", quoted(option.about));
+      text += fmt::format(" -d {}\n", shell_quoted(option.about));
     }
   }
   return text;
 }
 
+struct CompletionOptions {
+  std::string shell;
+  CLI::App* app = nullptr;  ///< whose words they are
+};
+
+int print_completion(const CompletionOptions& options) {
+  const std::vector<Command> commands = list_commands(*options.app);
+  const auto format = options.shell == "bash" ? format_bash : options.shell == "zsh" ? format_zsh : format_fish;
+  print(format(commands));
+  return kSuccess;
+}
+
+}  // namespace
+
 void add_completion(CLI::App& app, Action& action) {
-  CLI::App& verb = *app.add_subcommand("completion", "print what lets a shell complete the words of snug");
-  const auto shell = std::make_shared<std::string>();
-  verb.add_option("shell", *shell, "bash, zsh or fish")
-      ->required()
-      ->check(one_of({"bash", "zsh", "fish"}))
-      ->type_name("SHELL");
-  verb.footer(kCompletionHelp);
-  verb.callback([&app, &action, shell] {
-    action = [&app, shell] {
-      const std::vector<Command> commands = list_commands(app);
-      const std::string text = *shell == "bash"  ? format_bash(commands)
-                               : *shell == "zsh" ? format_zsh(commands)
-                                                 : format_fish(commands);
-      print(text);
-      return kSuccess;
-    };
-  });
+  const Verb verb(app, action, "completion", "print what lets a shell complete the words of snug", kCompletionHelp);
+  CompletionOptions& options = verb.runs(print_completion);
+  verb.option("shell", options.shell, "SHELL", "bash, zsh or fish", one_of({"bash", "zsh", "fish"})).required();
+  options.app = &app;
 }
 
 }  // namespace snug::app

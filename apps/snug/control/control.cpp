@@ -1,14 +1,17 @@
 // control: a program through the joints of a CLICK simulator, with snug's joint controller.
-#include "apps/snug/control/control.hpp"
+#include "apps/snug/command_line/verbs.hpp"
 
 #include <fmt/format.h>
-
 #include <cstdio>
-#include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/ranges.hpp"
 #include "apps/snug/command_line/scenario_options.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
+#include "apps/snug/command_line/verb.hpp"
 #include "apps/snug/common/robot_warnings.hpp"
 #include "snug/cell/joint_pace.hpp"
 #include "snug/core/input_error.hpp"
@@ -21,6 +24,20 @@
 
 namespace snug::app {
 namespace {
+
+struct ControlOptions {
+  std::string program;
+  std::string endpoint = "tcp://127.0.0.1:5555";
+  std::string scenario = "scenarios/box-demonstrator.yaml";  ///< arm, limits, gains, boxes
+  std::optional<std::string> sequence;                       ///< whose boxes are brought, whose gain is used
+  std::optional<std::string> robot;
+  MotionWords motion;
+  std::string corrections = "none";
+  std::string object = {};
+  std::string vacuum_event = "vacuum", blow_off_event = "blow_off";
+  ClientWords client;
+  bool json = false;
+};
 
 std::string as_json(const remote_plant::ProgramClientResult& result) {
   nlohmann::ordered_json document = {{"duration_s", result.duration},
@@ -53,12 +70,10 @@ std::string as_table(const remote_plant::ProgramClientResult& result) {
   text += fmt::format("\nprogram            {:.2f} s, {} ticks in {:.2f} s, real-time factor {:.0f}\n", result.duration,
                       result.ticks, result.wall, result.simulated / result.wall);
   if (!result.failure.empty())
-    text += fmt::format("failed             toward row {}: {}\n", result.row + 1,
+    text += fmt::format("failed             toward waypoint {}: {}\n", result.row + 1,
                         printable(result.failure, kLongestMessage));
   return text;
 }
-
-}  // namespace
 
 int run_control(const ControlOptions& options) {
   const model::Scenario scenario = load_changed(options.scenario, {});
@@ -75,7 +90,7 @@ int run_control(const ControlOptions& options) {
   choose_motion(options.motion, text, options.program, how);
   const motion::Program program = motion::parse_program(text, options.program);
   if (options.sequence) print_warnings(runs::find_misfits(scenario, *options.sequence, program));
-  const std::string corrections = options.corrections == "none" ? "" : options.corrections;
+  const std::string corrections = layer_of(options.corrections);
   motion::PreparedProgram plan =
       cell::prepare(scenario, sequence, how, runs::corrected(scenario, program, corrections));
   std::unique_ptr<const cell::JointPace> pace;
@@ -83,8 +98,8 @@ int run_control(const ControlOptions& options) {
   plan.path_limits = pace.get();
   const cell::CellArm arm(scenario, plan.settings.task_stiffness);
   remote_plant::ProgramClientSettings settings{options.object, options.vacuum_event, options.blow_off_event,
-                                               options.sequence ? &sequence : nullptr, options.patience};
-  click::Client client(options.endpoint, options.patience, click::find_client_keys(options.keys));
+                                               options.sequence ? &sequence : nullptr, options.client.patience};
+  click::Client client(options.endpoint, options.client.patience, click::find_client_keys(options.client.keys));
   const remote_plant::ProgramClientResult result = remote_plant::run_program(client, scenario, arm, plan, settings);
   if (!result.has_begun)
     throw InputError("command line", "--click", result.failure, "the address of a simulator of this robot");
@@ -92,6 +107,33 @@ int run_control(const ControlOptions& options) {
   if (result.failure.empty()) return kSuccess;
   std::fprintf(stderr, "snug: failed: %s\n", printable(result.failure, kLongestMessage).c_str());
   return kRunFailed;
+}
+
+constexpr const char* kControlExamples = R"(Examples:
+  snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --sequence 1      # in another terminal
+  snug control program.csv --click tcp://127.0.0.1:5555 --sequence 1
+With the corrections of a site: --corrections seq1. With a simulator that names things as the demonstrator's does:
+--object ur10_FTSensor_sr_gripper --vacuum-event gripper.)";
+
+}  // namespace
+
+void add_control(CLI::App& app, Action& action) {
+  const Verb verb(app, action, "control", "do a program with a CLICK simulator in another program", kControlExamples);
+  ControlOptions& options = verb.runs(run_control);
+  verb.option("program", options.program, "FILE.csv", "waypoint file (13 columns)").required();
+  verb.option("--click", options.endpoint, "ADDRESS", "where the simulator is: tcp://HOST:PORT or ipc://PATH");
+  verb.option("--scenario", options.scenario, "SCENARIO.yaml", "what the controller knows: arm, limits, gains, boxes");
+  verb.option("--sequence", options.sequence, "NAME",
+              "item sequence that the program packs: its boxes are brought, where the simulator has events for that");
+  verb.option("--robot", options.robot, "NAME", "robot of the scenario; absent: the one there is");
+  add_motion_words(verb, options.motion);
+  add_corrections(verb, options.corrections);
+  verb.option("--object", options.object, "NAME",
+              "the simulator's object that is driven; absent: the one with the joints");
+  verb.option("--vacuum-event", options.vacuum_event, "NAME", "name of the event that switches the vacuum");
+  verb.option("--blow-off-event", options.blow_off_event, "NAME", "name of the event that switches the blow-off");
+  add_client(verb, options.client, "--timeout");
+  add_json(verb, options.json);
 }
 
 }  // namespace snug::app

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/cup/cup.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
@@ -15,6 +16,16 @@ namespace snug::app {
 namespace {
 
 using nlohmann::ordered_json;
+
+struct CupEstimateOptions {
+  double diameter_mm = 0.0;
+  double bellows = 1.5;
+  std::string material = "silicone", lip = "plain";
+  std::string vacuum = "-60kPa";
+  std::optional<double> stroke_mm, mass_max;
+  std::optional<std::string> output;
+  bool json = false;
+};
 
 /// "-60kPa" in Pa.
 double pressure_of(const std::string& text) {
@@ -65,8 +76,6 @@ ordered_json as_json(const cup::CupEstimate& estimate) {
   return json;
 }
 
-}  // namespace
-
 int run_cup_estimate(const CupEstimateOptions& options) {
   const cup::CupSheet sheet = sheet_of(options);
   const cup::CupEstimate estimate = cup::estimate_cup(sheet);
@@ -78,7 +87,12 @@ int run_cup_estimate(const CupEstimateOptions& options) {
   return kSuccess;
 }
 
-int run_cup_catalogue(bool json) {
+struct CatalogueOptions {
+  bool json = false;
+};
+
+int run_cup_catalogue(const CatalogueOptions& options) {
+  const bool json = options.json;
   ordered_json list = ordered_json::array();
   if (!json)
     print("diameter  folds  lip    pull-off, N          lateral, N           stroke, mm  axial stiffness, N/m\n");
@@ -99,6 +113,35 @@ int run_cup_catalogue(bool json) {
   }
   if (json) print(list.dump(2) + "\n");
   return kSuccess;
+}
+
+constexpr const char* kEstimateHelp =
+    R"(Prints `cup` and `uncertainty` of a scenario, with the range of each number and where it comes from: an estimate to start
+with. What holds and how the box tilts depends on it, filling hardly. Measure first what `snug identify` says is unknown.
+Example:
+  snug cup estimate --diameter 40 --bellows 1.5 --material silicone --lip foam --vacuum -60kPa --mass-max 5)";
+
+}  // namespace
+
+void add_cup_estimate(const Verb& verb) {
+  const Verb part = verb.part("estimate", "a starting cup from a data sheet", kEstimateHelp);
+  CupEstimateOptions& options = part.runs(run_cup_estimate);
+  part.option("--diameter", options.diameter_mm, "MM", "of the lip", positive()).required();
+  part.option("--bellows", options.bellows, "N", "folds: 0 (flat), 1.5 or 2.5");
+  part.option("--material", options.material, "NAME", "of the cup",
+              one_of({"silicone", "nitrile", "polyurethane", "natural-rubber"}));
+  part.option("--lip", options.lip, "NAME", "what seals", one_of({"plain", "foam"}));
+  part.option("--vacuum", options.vacuum, "PRESSURE",
+              "gauge pressure of the hold, with its unit: kPa, mbar, bar or Pa");
+  part.option("--stroke", options.stroke_mm, "MM", "free length less length under vacuum", finite());
+  part.option("--mass-max", options.mass_max, "KG", "of the heaviest box: is it held?", positive());
+  part.option("-o,--output", options.output, "FILE.yaml", "also write the block here");
+  add_json(part, options.json);
+}
+
+void add_cup_catalogue(const Verb& verb) {
+  const Verb part = verb.part("catalogue", "generic cups by size, at -60 kPa");
+  add_json(part, part.runs(run_cup_catalogue).json);
 }
 
 }  // namespace snug::app

@@ -1,16 +1,20 @@
 // export: one function for each format.
 #include "apps/snug/export/export.hpp"
+#include "apps/snug/command_line/ranges.hpp"
+#include "apps/snug/command_line/verbs.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
+#include <sstream>
 #include <string_view>
 
 #include "apps/snug/command_line/outputs.hpp"
-#include "apps/snug/common/recorded_instant.hpp"
-#include "apps/snug/common/robot_files.hpp"
-#include "apps/snug/export/export_program.hpp"
+#include "apps/snug/common/recordings.hpp"
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/record/csv.hpp"
@@ -22,9 +26,10 @@ namespace {
 
 int write_mcap(const ExportOptions& options, OutputFile output) {
   record::RecordingReader reader(options.input);
-  const replay::McapTotals totals =
-      replay::export_mcap(reader, file_name(options.input), options.selection, std::move(output),
-                          {.compression = options.compression}, find_robot(reader, options.input, options.urdf));
+  const replay::McapTotals totals = replay::export_mcap(
+      reader, file_name(options.input), options.selection, std::move(output),
+      {.compression = options.compression == "none" ? replay::McapCompression::None : replay::McapCompression::Zstd},
+      find_robot(reader, options.input, options.urdf));
   std::fprintf(stderr, "%s: %zu frames, %llu messages, %.2f MB\n", options.output.c_str(), totals.frames,
                static_cast<unsigned long long>(totals.messages), static_cast<double>(totals.bytes) / 1e6);
   return kSuccess;
@@ -57,6 +62,13 @@ int write_glb(const ExportOptions& options, OutputFile output) {
   return kSuccess;
 }
 
+/// One format that can be asked for.
+struct ExportFormat {
+  const char* name;
+  const char* description;  ///< for --help: what it is made from and who reads it
+  int (*write)(const ExportOptions&, OutputFile);
+};
+
 constexpr std::array kFormats = {
     ExportFormat{"mcap", "a recording for Foxglove, Lichtblick and other viewers of MCAP", write_mcap},
     ExportFormat{"csv", "a recording as one table with the column names of mc_rtc logs", write_csv},
@@ -71,11 +83,55 @@ constexpr std::array kFormats = {
     ExportFormat{"mc-rtc-flat", "the same in the columnar form that mc_log_ui reads", write_mc_rtc_flat},
 };
 
-}  // namespace
+constexpr const char* kExportExamples = R"(
+Examples:
+  snug export run.h5 --format mcap -o run.mcap
+  snug export run.h5 --format mcap --from 10 --to 20 --every 4 -o part.mcap
+  snug export run.h5 --format csv -o run.csv
+  snug export run.h5 --format glb --load -o load.glb
+  snug export program.csv --scenario scenarios/box-demonstrator.yaml --format urscript -o program.script
+  snug export program.csv --scenario scenarios/box-demonstrator.yaml --format urscript --dry-run -o dry.script
+  snug export program.csv --scenario scenarios/box-demonstrator.yaml --format urscript --from-box BOX028 -o rest.script
+  snug export program.csv --scenario scenarios/box-demonstrator.yaml --format ros-trajectory -o program.yaml
+A program that was packed with fast motions is exported with its own timing, as it is simulated in the scenario's cell.)";
 
-std::span<const ExportFormat> export_formats() { return kFormats; }
+constexpr const char* kPrograms = "urscript ros-trajectory mc-rtc-csv mc-rtc-flat";
 
-int run_export(const ExportOptions& options) {
+/// Options that only some formats have a use for: the formats, then the options.
+constexpr std::array kOptionFormats = {
+    std::array{"mcap csv", "--from --to --every"},
+    std::array{"mcap", "--compression"},
+    std::array{"mcap glb", "--urdf"},
+    std::array{"glb", "--time --load"},
+    std::array{
+        kPrograms,
+        "--scenario --items --container --pallet --set --sequence --corrections --controller --tempo --unchecked"},
+    std::array{"ros-trajectory", "--period"},
+    std::array{"urscript",
+               "--vacuum-output --blow-off-output --vacuum-input --vacuum-timeout --vent-time --part-input "
+               "--part-timeout --payload-inertia --from-box --dry-run"},
+};
+
+std::vector<std::string> split_words(const std::string& text) {
+  std::istringstream words(text);
+  return {std::istream_iterator<std::string>(words), {}};
+}
+
+/// Throws InputError for an option that was given and means nothing to the format.
+void refuse_without_effect(const Verb& verb, const std::string& format) {
+  for (const auto& [names, options] : kOptionFormats) {
+    const std::vector<std::string> formats = split_words(names);
+    if (std::ranges::find(formats, format) != formats.end()) continue;
+    for (const std::string& option : split_words(options)) {
+      if (!verb.has(option.c_str())) continue;
+      throw InputError("command line", option, "with --format " + format,
+                       fmt::format("--format {}", fmt::join(formats, " or ")));
+    }
+  }
+}
+
+int run_export(const ExportOptions& options, const Verb& verb) {
+  refuse_without_effect(verb, options.format);
   const auto found = std::find_if(kFormats.begin(), kFormats.end(), [&](const ExportFormat& format) {
     return std::string_view(format.name) == options.format;
   });
@@ -88,6 +144,75 @@ int run_export(const ExportOptions& options) {
   if (!options.scenario.empty()) add_file(inputs, "--scenario", options.scenario);
   for (NamedFile& items : name_all("--items", options.changes.items)) inputs.push_back(std::move(items));
   return found->write(options, reserve(inputs, options.output));
+}
+
+/// Single outputs and inputs, standard ones, in the place of those of the scenario.
+void add_wiring(const Verb& verb, ExportOptions& options) {
+  const auto add = [&](const char* name, std::optional<int>& number, const std::string& what) {
+    verb.option(name, number, "N", "of urscript: " + what + " (default: robot.io of the scenario)", whole(0, 7));
+  };
+  add("--vacuum-output", options.vacuum_output, "standard digital output of the vacuum");
+  add("--blow-off-output", options.blow_off_output, "standard digital output of the blow-off");
+  add("--vacuum-input", options.vacuum_input, "standard digital input that is on while there is vacuum");
+  add("--part-input", options.part_input, "standard digital input that is on while a box stands at the aligner");
+}
+
+}  // namespace
+
+void add_export(CLI::App& app, Action& action) {
+  std::vector<std::string> names;
+  std::string footer = "Formats:\n";
+  for (const ExportFormat& format : kFormats) {
+    names.emplace_back(format.name);
+    footer += std::string("  ") + format.name + std::string(16 - names.back().size(), ' ') + format.description + "\n";
+  }
+  const Verb verb(app, action, "export", "write a recording or a program in a format of other programs",
+                  footer + kExportExamples);
+  ExportOptions& options = verb.runs(run_export);
+  verb.option("input", options.input, "FILE", "what to export").required();
+  verb.option("--format", options.format, "NAME", "name of the format, see below", one_of(names)).required();
+  verb.option("-o,--output", options.output, "FILE", "the file to write").required();
+  add_selection(verb, options.selection);
+  verb.option("--compression", options.compression, "NAME", "of mcap: zstd, or none for readers that cannot unpack it",
+              one_of({"zstd", "none"}));
+  verb.option("--scenario", options.scenario, "SCENARIO.yaml",
+              "of a program: scenario file with the robot, its limits and gains");
+  add_scenario_changes(verb, options.changes);
+  verb.option("--sequence", options.sequence, "NAME",
+              "of a program: item sequence that it packs: which boxes it carries, and their masses; refused where it "
+              "picks others (default: the first)");
+  verb.option("--corrections", options.corrections, "LAYER", "of a program: a layer of the scenario, or none");
+  verb.option("--controller", options.motion.controller, "KIND",
+              "of a program: what it was made for, lagged or fast (default: as the program was packed)",
+              one_of({"lagged", "fast"}));
+  verb.option("--tempo", options.motion.tempo, "FRACTION",
+              "of a program: fraction of the speeds, with fast (default: that it was packed with, or 1)",
+              within(0.5, 1.0));
+  verb.flag("--unchecked", options.is_unchecked,
+            "of a program: write it without simulating it first; otherwise it is refused where the robot stops, no box "
+            "is sealed or a box is lost");
+  verb.option("--period", options.period, "SECONDS", "of ros-trajectory: time between points at most",
+              within(1e-3, 100.0));
+  add_wiring(verb, options);
+  verb.option("--vacuum-timeout", options.script.vacuum_timeout, "SECONDS",
+              "of urscript: the program halts when the vacuum has not changed by then", within(0.1, 600.0));
+  verb.option("--vent-time", options.script.vent_time, "SECONDS",
+              "of urscript: from when the input says that the vacuum fell until it is gone; where robot.io has a "
+              "gauge, that has to say so as well",
+              within(0.0, 60.0));
+  verb.option("--part-timeout", options.script.part_timeout, "SECONDS",
+              "of urscript: the program halts when no box stands at the aligner by then", within(0.1, 86400.0));
+  verb.flag("--payload-inertia", options.script.has_inertia,
+            "of urscript: payloads with inertia, changed over 0.1 s (set_target_payload, PolyScope 5.10 and later)");
+  const OptionRow from_box = verb.option("--from-box", options.from_box, "BOX",
+                                         "of urscript: begin with this box: those before it lie where they belong");
+  verb.flag("--dry-run", options.script.is_dry,
+            "of urscript: waypoints as straight moves 20 mm higher, at a quarter of their speed, nothing switched")
+      .excludes(from_box);
+  verb.option("--time", options.time, "SECONDS", "of glb: the instant (default: the end)", finite());
+  verb.flag("--load", options.is_load_only, "of glb: only the container and the boxes in it, in the container's frame");
+  verb.option("--urdf", options.urdf, "FILE.urdf",
+              "of mcap and glb: how the robot in it looks (default: the file that its scenario names)");
 }
 
 }  // namespace snug::app

@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "apps/snug/command_line/program_motion.hpp"
 #include "apps/snug/command_line/scenario_options.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/verb.hpp"
 #include "snug/control/urscript.hpp"
 #include "snug/replay/mcap_writer.hpp"
@@ -19,10 +19,10 @@ struct ExportOptions {
   std::string format;  ///< name in export_formats()
   std::string output;
   replay::Selection selection;
-  replay::McapCompression compression = replay::McapCompression::Zstd;
-  std::optional<std::string> urdf;  ///< of the robot in a recording; absent: looked for
-  std::optional<double> time;       ///< s, of one instant; absent: the end
-  bool is_load_only = false;        ///< the container and the boxes in it
+  std::string compression = "zstd";  ///< or none
+  std::optional<std::string> urdf;   ///< of the robot in a recording; absent: looked for
+  std::optional<double> time;        ///< s, of one instant; absent: the end
+  bool is_load_only = false;         ///< the container and the boxes in it
   // of programs
   std::string scenario;  ///< its robot, limits and gains
   ScenarioChanges changes;
@@ -37,15 +37,10 @@ struct ExportOptions {
   std::string from_box;  ///< id; empty: the program's first
 };
 
-/// One format that can be asked for.
-struct ExportFormat {
-  const char* name;
-  const char* description;  ///< for --help: what it is made from and who reads it
-  int (*write)(const ExportOptions&, OutputFile);
-};
-[[nodiscard]] std::span<const ExportFormat> export_formats();
-
-void add_export(CLI::App& app, Action& action);
-[[nodiscard]] int run_export(const ExportOptions& options);
+/// Programs, for the controllers of real robots.
+[[nodiscard]] int write_urscript(const ExportOptions& options, OutputFile output);
+[[nodiscard]] int write_ros_trajectory(const ExportOptions& options, OutputFile output);
+[[nodiscard]] int write_mc_rtc_csv(const ExportOptions& options, OutputFile output);
+[[nodiscard]] int write_mc_rtc_flat(const ExportOptions& options, OutputFile output);
 
 }  // namespace snug::app

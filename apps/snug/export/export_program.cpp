@@ -1,5 +1,5 @@
 // export of programs: for the controllers of real robots.
-#include "apps/snug/export/export_program.hpp"
+#include "apps/snug/export/export.hpp"
 
 #include <fmt/format.h>
 
@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/version.hpp"
 #include "apps/snug/common/robot_warnings.hpp"
 #include "snug/cell/held_boxes.hpp"
@@ -28,11 +29,9 @@
 namespace snug::app {
 namespace {
 
-std::string layer_of(const ExportOptions& options) { return options.corrections == "none" ? "" : options.corrections; }
-
 cell::SimulationOptions simulation_for(const model::Scenario& scenario, const ExportOptions& options) {
   cell::SimulationOptions simulation;
-  simulation.cup = runs::cup_for(scenario, layer_of(options));
+  simulation.cup = runs::cup_for(scenario, layer_of(options.corrections));
   simulation.robot = scenario.robot->name;
   choose_motion(options.motion, read_file(options.input, "a program file (CSV)"), options.input, simulation);
   return simulation;
@@ -42,12 +41,13 @@ cell::SimulationOptions simulation_for(const model::Scenario& scenario, const Ex
 struct LoadedProgram {
   cell::Simulation simulation;
   motion::PreparedProgram plan;  ///< as it is simulated: with the tool that lags behind, or fast
-  /// Done in the cell, with contact: of a fast program what is written, since contact ends its rows and its waits.
+  /// Done in the cell, with contact: of a fast program what is written, since contact ends its waypoints and its waits.
   std::optional<runs::MotionTrial> trial;
 
   LoadedProgram(const model::Scenario& scenario, const std::string& sequence, const ExportOptions& options)
       : simulation(scenario, sequence, simulation_for(scenario, options)),
-        plan(simulation.prepare(runs::corrected(scenario, motion::load_program(options.input), layer_of(options)))) {
+        plan(simulation.prepare(
+            runs::corrected(scenario, motion::load_program(options.input), layer_of(options.corrections)))) {
     if (!options.is_unchecked) trial = runs::try_motion(simulation, plan);
   }
 
@@ -56,7 +56,7 @@ struct LoadedProgram {
   /// `done`: the motion that is written, as simulated or fitted to that.
   [[nodiscard]] control::RobotProgram for_robot(const motion::PreparedProgram& done, const ExportOptions& options,
                                                 bool is_ur = false) const {
-    const std::string layer = layer_of(options).empty() ? "" : ", corrections " + options.corrections;
+    const std::string layer = layer_of(options.corrections).empty() ? "" : ", corrections " + options.corrections;
     const std::string tempo = is_fast() ? fmt::format(", tempo {}", motion::tempo_of(plan.settings.tracking)) : "";
     return {.plan = done,
             .arm = simulation.arm()->model(),
@@ -70,7 +70,8 @@ struct LoadedProgram {
             .flange = is_ur || has_tool0() ? "tool0" : simulation.scenario().robot->flange_frame};
   }
 
-  /// The program for a robot that follows exactly: the same rows with speeds and accelerations of the simulated motion.
+  /// The program for a robot that follows exactly: the same waypoints with speeds and accelerations of the simulated
+  /// motion.
   [[nodiscard]] motion::PreparedProgram fitted() const {
     motion::PreparedProgram exact = plan;
     exact.row_limits = motion::fit_limits(exact, X_WE_start());
@@ -84,13 +85,13 @@ struct LoadedProgram {
   [[nodiscard]] const Pose& X_WE_start() const { return simulation.scenario().controller.X_WE_start; }
 
  private:
-  /// What the cup holds on the way to each row, as far as they tell; says what they do not tell.
+  /// What the cup holds on the path to each waypoint, as far as they tell; says what they do not tell.
   [[nodiscard]] std::vector<std::optional<control::CarriedLoad>> find_loads() const {
     std::vector<std::optional<control::CarriedLoad>> loads;
     cell::HeldBoxes boxes(simulation.scenario(), simulation.sequence());
-    const std::vector<motion::Waypoint>& rows = plan.program.waypoints;
+    const std::vector<motion::Waypoint>& waypoints = plan.program.waypoints;
     bool was_unknown = false;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (std::size_t i = 0; i < waypoints.size(); ++i) {
       boxes.depart(plan.program, static_cast<int>(i), i > 0 ? plan.X_WE[i - 1] : X_WE_start());
       loads.emplace_back();
       if (const std::optional<cell::HeldBox>& held = boxes.held()) {
@@ -100,10 +101,10 @@ struct LoadedProgram {
         loads.back() = {inertia.mass, held->X_EP * inertia.com, R_EP * inertia.inertia * R_EP.transpose()};
       }
       if (boxes.is_unknown() && !was_unknown) {
-        std::fprintf(
-            stderr,
-            "snug: warning: row %zu (%s): no box of sequence %s is known to be held: payload of the gripper alone\n",
-            i + 1, motion::name_of(rows[i]).c_str(), simulation.sequence().name.c_str());
+        std::fprintf(stderr,
+                     "snug: warning: waypoint %zu (%s): no box of sequence %s is known to be held: payload of the "
+                     "gripper alone\n",
+                     i + 1, motion::name_of(waypoints[i]).c_str(), simulation.sequence().name.c_str());
       }
       was_unknown = boxes.is_unknown();
     }
@@ -140,8 +141,8 @@ bool has_succeeded(const LoadedProgram& program) {
   return accept("it does not succeed in the simulated cell", runs::find_loss(*program.trial));
 }
 
-/// Whether a robot that follows the rows of `fitted` exactly does not do worse in the cell than was simulated. How far
-/// a box that is let go may be from where the simulation puts it is not looked at: that it stays packed is.
+/// Whether a robot that follows the waypoints of `fitted` exactly does not do worse in the cell than was simulated. How
+/// far a box that is let go may be from where the simulation puts it is not checked: that it stays packed is.
 bool is_as_good(const motion::PreparedProgram& fitted, const LoadedProgram& program) {
   if (!program.trial) return true;
   const cell::Simulation& own = program.simulation;
@@ -161,9 +162,9 @@ std::optional<control::JointRun> find_run(const LoadedProgram& program) {
           ? program.trial->joints
           : control::run_joints(program.plan, arm.controller(), control::make_demonstrator_machine(), arm.start());
   if (!run.is_complete) {
-    const auto row = static_cast<std::size_t>(std::max(0, run.stuck_row));
-    std::fprintf(stderr, "snug: the robot does not reach row %zu (%s): snug check says why\n", row + 1,
-                 motion::name_of(program.plan.program.waypoints[row]).c_str());
+    const auto stuck = static_cast<std::size_t>(std::max(0, run.stuck_row));
+    std::fprintf(stderr, "snug: the robot does not reach waypoint %zu (%s): snug check says why\n", stuck + 1,
+                 motion::name_of(program.plan.program.waypoints[stuck]).c_str());
     return std::nullopt;
   }
   if (!program.is_fast() && !has_succeeded(program)) return std::nullopt;
@@ -182,7 +183,7 @@ int write_run(const ExportOptions& options, OutputFile output, Format format) {
   return kSuccess;
 }
 
-/// Rows as straight moves.
+/// Waypoints as straight moves.
 int write_moves(const ExportOptions& options, const control::UrScriptOptions& script_options,
                 const LoadedProgram& program, OutputFile output) {
   const motion::PreparedProgram moves = program.is_fast() ? program.plan : program.fitted();
@@ -198,8 +199,8 @@ int write_moves(const ExportOptions& options, const control::UrScriptOptions& sc
   return kSuccess;
 }
 
-/// The part of a run from a row on, which is gone to at rest: where the tool is highest on the way there from what was
-/// let go before.
+/// The part of a run from a waypoint on, which is gone to at rest: where the tool is highest on the path there from
+/// what was let go before.
 control::JointRun cut_run(const control::JointRun& run, std::size_t first_row, double tick) {
   if (first_row == 0) return run;
   const auto& samples = run.samples;
@@ -234,20 +235,20 @@ int write_targets(const ExportOptions& options, const control::UrScriptOptions& 
   return kSuccess;
 }
 
-/// The first row of the box with which the program is to begin.
+/// The first waypoint of the box with which the program is to begin.
 std::size_t find_first_row(const ExportOptions& options, const LoadedProgram& program) {
   if (options.from_box.empty()) return 0;
-  const std::vector<motion::Waypoint>& rows = program.plan.program.waypoints;
+  const std::vector<motion::Waypoint>& waypoints = program.plan.program.waypoints;
   std::vector<std::string> picked;
   for (const model::Item& item : program.simulation.sequence().items) {
-    const auto is_its = [&](const motion::Waypoint& row) {
+    const auto is_its = [&](const motion::Waypoint& waypoint) {
       const bool is_before =
-          row.motion_class == motion::MotionClass::PrePick || row.motion_class == motion::MotionClass::Pick;
-      return is_before && motion::fit_of(row, item.parcel) > 0;
+          waypoint.motion_class == motion::MotionClass::PrePick || waypoint.motion_class == motion::MotionClass::Pick;
+      return is_before && motion::fit_of(waypoint, item.parcel) > 0;
     };
-    const auto first = std::ranges::find_if(rows, is_its);
-    if (first == rows.end()) continue;
-    if (item.parcel == options.from_box) return static_cast<std::size_t>(first - rows.begin());
+    const auto first = std::ranges::find_if(waypoints, is_its);
+    if (first == waypoints.end()) continue;
+    if (item.parcel == options.from_box) return static_cast<std::size_t>(first - waypoints.begin());
     picked.push_back(item.parcel);
   }
   const std::string_view nearest = find_nearest(options.from_box, picked);

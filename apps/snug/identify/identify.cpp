@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/shipped.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
@@ -21,26 +22,24 @@
 namespace snug::app {
 namespace {
 
+struct IdentifyStiffnessOptions : IdentifyOptions {
+  std::string input;
+  std::string method = "compliance";
+  std::optional<std::string> wrench;
+  std::string parameters = "5";
+};
+
+struct IdentifyDampingOptions : IdentifyOptions {
+  std::vector<std::string> inputs;
+  std::string start = "auto";
+  std::optional<std::uint64_t> release;  ///< only this one, from 0
+  bool coupling = false;
+  bool stiffness = false;
+};
+
 using identification::HeldBackError;
 using identification::MeasurementNoise;
 using identification::Parameter;
-
-model::CupParams cup_of(const IdentifyOptions& options) {
-  return options.scenario ? model::load_scenario(find_scenario(*options.scenario)).cup : model::CupParams{};
-}
-
-/// What was said on the command line goes before what the file says.
-void apply(const IdentifyOptions& options, MeasurementNoise& noise, bool& is_given) {
-  const auto set = [&](const std::optional<double>& value, double& field) {
-    if (!value) return;
-    field = *value;
-    is_given = true;
-  };
-  set(options.position_noise, noise.position);
-  set(options.rotation_noise, noise.rotation);
-  set(options.force_noise, noise.force);
-  set(options.torque_noise, noise.torque);
-}
 
 identification::StiffnessOptions as_fit_options(const IdentifyStiffnessOptions& options, const model::CupParams& cup) {
   identification::StiffnessOptions fit;
@@ -89,8 +88,6 @@ std::vector<identification::Release> load_all(const IdentifyDampingOptions& opti
                      "a number below " + std::to_string(releases.size()) + ", that of the releases");
   return {releases[*options.release]};
 }
-
-}  // namespace
 
 int run_identify_stiffness(const IdentifyStiffnessOptions& options) {
   const model::CupParams cup = cup_of(options);
@@ -142,64 +139,103 @@ int run_identify_damping(const IdentifyDampingOptions& options) {
   return kSuccess;
 }
 
-int run_identify_pluck(const IdentifyPluckOptions& options) {
-  using identification::PluckDirection;
-  identification::Pluck pluck;
-  // A B1 box of the demonstrator, held by the middle of its upper face: Sz points into it.
-  Vector3 size(0.2, 0.2, 0.097);
-  SpatialInertia box{0.55, Vector3(0.0, 0.0, -0.032), Vector3(0.0021, 0.0022, 0.0038).asDiagonal()};
-  model::CupParams cup;
-  if (options.scenario) {
-    const model::Scenario scenario = model::load_scenario(find_scenario(*options.scenario));
-    cup = scenario.cup;
-    if (!options.parcel.empty()) {
-      const model::Parcel* parcel = model::find_parcel(scenario, options.parcel);
-      if (parcel == nullptr) {
-        std::vector<std::string> ids;
-        for (const model::Parcel& one : scenario.parcels) ids.push_back(one.id);
-        const std::string_view nearest = find_nearest(options.parcel, ids);
-        throw InputError("command line", "--parcel", "'" + options.parcel + "'",
-                         nearest.empty() ? "a parcel of the scenario"
-                                         : "a parcel of the scenario, nearest is " + std::string(nearest));
-      }
-      size = parcel->size;
-      box = parcel->inertia;
-    }
-  } else if (!options.parcel.empty()) {
-    throw InputError("command line", "--parcel", "no scenario that has it", "--scenario as well");
-  }
-  const Matrix3 R_SP = Vector3(1.0, -1.0, -1.0).asDiagonal();
-  pluck.load_S = {box.mass, R_SP * (box.com - Vector3(0.0, 0.0, 0.5 * size.z())),
-                  R_SP * box.inertia * R_SP.transpose()};
-  pluck.frames = identification::frames_of(cup);
-  pluck.K = cup::as_matrix(cup.stiffness);
-  pluck.D = cup::as_matrix(cup.damping);
-  pluck.direction = options.direction == "axial"     ? PluckDirection::Axial
-                    : options.direction == "lateral" ? PluckDirection::Lateral
-                    : options.direction == "bend"    ? PluckDirection::Bend
-                                                     : PluckDirection::Torsion;
-  const bool is_turn = pluck.direction == PluckDirection::Bend || pluck.direction == PluckDirection::Torsion;
-  pluck.amplitude = options.amplitude.value_or(is_turn ? 0.1 : 0.004);
-  constexpr double kMostPull = 0.03, kMostTurn = 0.6;  // m, rad: a cup of 50 mm, a law that ends at 45 degrees
-  if (pluck.amplitude > (is_turn ? kMostTurn : kMostPull))
-    throw InputError("command line", "--amplitude", fmt::format("{}", pluck.amplitude),
-                     is_turn ? "0.6 rad or less" : "0.03 m or less");
-  MeasurementNoise noise;
-  bool is_given = true;
-  apply(options, noise, is_given);
-  Rng rng = Rng(options.seed).split("pluck");
-  std::vector<identification::Release> releases;
-  for (std::uint64_t i = 0; i < options.repeat; ++i) {
-    releases.push_back(identification::make_pluck(pluck));
-    identification::add_noise(releases.back(), noise, rng);
-  }
-  NamedFiles inputs;
-  add_file(inputs, "--scenario", options.scenario);
-  write_file(*reserve(inputs, options.output), identification::format_releases(releases));
-  print(fmt::sprintf("%s: %llu releases %s by %g %s, %g kg, %zu samples each\n", options.output->c_str(),
-                     static_cast<unsigned long long>(options.repeat), options.direction.c_str(), pluck.amplitude,
-                     is_turn ? "rad" : "m", box.mass, releases.front().times.size()));
-  return kSuccess;
+constexpr const char* kStiffnessHelp =
+    R"(Each pose: where the lip is in the gripper's frame, and the cup's wrench on the box (sensor) or the box's mass and centre of
+mass with the gripper's orientation (gravity). Files: docs/formats.md, static poses. Poses that do not belong to the rest are
+left out and named by index. Verdicts: identified (standard error below 5 %), weak (below 25 %), not identifiable.
+Methods: compliance, closed form, the default; wrench, closed form, exact without noise, biased low with it;
+errors-in-variables, maximum likelihood, the best error bars.
+Examples:
+  snug identify stiffness scenarios/examples/poses.json
+  snug identify stiffness scenarios/examples/poses.json --method errors-in-variables --wrench gravity -o cup.yaml
+  snug identify stiffness scenarios/examples/poses.json --parameters 21 --json)";
+
+constexpr const char* kDampingHelp =
+    R"(Each release: poses of the lip in the gripper's frame after a held box was displaced and let go, gripper at rest; mass, centre
+of mass and inertia of the box. Files: docs/formats.md, releases. Stiffness is that of the file, else of --scenario.
+Examples:
+  snug identify pluck --scenario scenarios/box-demonstrator.yaml --parcel BOX013 -o pluck.json
+  snug identify damping pluck.json --scenario scenarios/box-demonstrator.yaml -o cup.yaml
+  snug identify damping pluck.json --release 0 --json)";
+
+}  // namespace
+
+void add_identify_stiffness(const Verb& verb) {
+  const Verb part = verb.part("stiffness", "the cup's stiffness from a held box at rest", kStiffnessHelp);
+  IdentifyStiffnessOptions& options = part.runs(run_identify_stiffness);
+  part.option("poses", options.input, "FILE.json|FILE.csv", "static poses").required();
+  part.option("--method", options.method, "NAME", "compliance, wrench or errors-in-variables",
+              one_of({"compliance", "wrench", "errors-in-variables"}));
+  part.option("--wrench", options.wrench, "NAME", "sensor or gravity; the sensor's unless some pose has none",
+              one_of({"sensor", "gravity"}));
+  part.option("--parameters", options.parameters, "N", "5, a cup that looks the same from all sides, or 21",
+              one_of({"5", "21"}));
+  add_identify_scenario(part, options);
+  add_pose_noise(part, options);
+  part.option("--force-noise", options.force_noise, "N", "0.3 unless the file tells", positive());
+  part.option("--torque-noise", options.torque_noise, "NM", "0.02 unless the file tells", positive());
+  add_identify_result(part, options);
+}
+
+void add_identify_damping(const Verb& verb) {
+  const Verb part = verb.part("damping", "the cup's damping from free oscillations", kDampingHelp);
+  IdentifyDampingOptions& options = part.runs(run_identify_damping);
+  part.option("releases", options.inputs, "FILE.json|FILE.csv", "records after a release").required();
+  part.option("--release", options.release, "N", "only this one of all, counted from 0", whole(0));
+  part.option("--start", options.start, "NAME",
+              "how the box moves when a record begins: rest, moving, or auto: at rest unless the data contradict",
+              one_of({"auto", "rest", "moving"}));
+  part.flag("--coupling", options.coupling, "also the damping that couples shear and bending");
+  part.flag("--stiffness", options.stiffness, "the stiffness too, from the given one on");
+  add_identify_scenario(part, options);
+  add_pose_noise(part, options);
+  add_identify_result(part, options);
+}
+
+model::CupParams cup_of(const IdentifyOptions& options) {
+  return options.scenario ? model::load_scenario(find_scenario(*options.scenario)).cup : model::CupParams{};
+}
+
+void apply(const IdentifyOptions& options, identification::MeasurementNoise& noise, bool& is_given) {
+  const auto set = [&](const std::optional<double>& value, double& field) {
+    if (!value) return;
+    field = *value;
+    is_given = true;
+  };
+  set(options.position_noise, noise.position);
+  set(options.rotation_noise, noise.rotation);
+  set(options.force_noise, noise.force);
+  set(options.torque_noise, noise.torque);
+}
+
+void add_identify_scenario(const Verb& part, IdentifyOptions& options) {
+  part.option("--scenario", options.scenario, "SCENARIO.yaml",
+              "whose cup is the first guess; without, the cup that scenarios have by default");
+}
+
+void add_pose_noise(const Verb& part, IdentifyOptions& options) {
+  part.option("--position-noise", options.position_noise, "M",
+              "standard deviation along each axis; 0.0005 unless the file tells", positive());
+  part.option("--rotation-noise", options.rotation_noise, "RAD", "about each axis; 0.0035 unless the file tells",
+              positive());
+}
+
+void add_identify_result(const Verb& part, IdentifyOptions& options) {
+  part.option("-o,--output", options.output, "FILE.yaml", "the numbers as a block that a scenario takes");
+  add_json(part, options.json);
+}
+
+void add_identify(CLI::App& app, Action& action) {
+  const Verb verb(
+      app, action, "identify", "numbers of the model from measurements, with their errors",
+      "`snug identify stiffness --help` and so on tell files and methods; docs/theory/identification.md the rest.");
+  add_identify_stiffness(verb);
+  add_identify_damping(verb);
+  add_identify_pluck(verb);
+  add_identify_payload(verb);
+  add_identify_release(verb);
+  add_identify_poses(verb);
+  add_identify_scene(verb);
 }
 
 }  // namespace snug::app

@@ -3,9 +3,9 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "apps/snug/command_line/verb.hpp"
+#include "snug/identification/static_poses.hpp"
 
 namespace snug::app {
 
@@ -17,70 +17,22 @@ struct IdentifyOptions {
   bool json = false;
 };
 
-struct IdentifyStiffnessOptions : IdentifyOptions {
-  std::string input;
-  std::string method = "compliance";
-  std::optional<std::string> wrench;
-  std::string parameters = "5";
-};
+/// The cup of --scenario, or the default one.
+[[nodiscard]] model::CupParams cup_of(const IdentifyOptions& options);
+/// What was said on the command line goes before what the file says.
+void apply(const IdentifyOptions& options, identification::MeasurementNoise& noise, bool& is_given);
 
-struct IdentifyDampingOptions : IdentifyOptions {
-  std::vector<std::string> inputs;
-  std::string start = "auto";
-  std::optional<std::uint64_t> release;  ///< only this one, from 0
-  bool coupling = false;
-  bool stiffness = false;
-};
+void add_identify_scenario(const Verb& part, IdentifyOptions& options);
+void add_pose_noise(const Verb& part, IdentifyOptions& options);
+void add_identify_result(const Verb& part, IdentifyOptions& options);
 
-struct IdentifyPluckOptions : IdentifyOptions {
-  std::string parcel;
-  std::string direction = "axial";
-  std::optional<double> amplitude;  ///< m or rad
-  std::uint64_t repeat = 3;
-  std::uint64_t seed = 1;
-};
-
-struct IdentifyPayloadOptions : IdentifyOptions {
-  std::string input;
-  std::optional<double> force_bias, torque_bias;  ///< N, Nm: what taring left
-  bool rigid_lip = false;                         ///< the lip does not give
-};
-
-struct IdentifyReleaseOptions : IdentifyOptions {
-  std::vector<std::string> inputs;
-  bool evaluate = false;  ///< only what the cup of the scenario predicts
-};
-
-struct IdentifyPosesOptions {
-  std::string input;
-  std::optional<std::string> cup;     ///< the law that is evaluated
-  std::optional<std::string> output;  ///< the law found
-  bool evaluate = false;              ///< fit nothing
-  bool json = false;
-};
-
-struct IdentifySceneOptions {
-  std::string task;
-  std::vector<std::string> recordings;                        ///< those of the task unless given
-  bool floor = false;                                         ///< only the error that noise of the start sets
-  bool evaluate = false;                                      ///< only the errors of the task's present values
-  std::optional<std::uint64_t> global, local, scatter, seed;  ///< instead of the task's
-  std::optional<std::string> log;                             ///< of points tried
-  std::optional<std::string> output;                          ///< the task with the values found
-  std::optional<std::string> scenario;                        ///< the scenario with the values found
-  std::optional<std::string> page;                            ///< what was found and what it improved
-  std::optional<int> threads;                                 ///< absent: all cores
-  bool profile = false;                                       ///< intervals by the profile of the sum of squares
-  bool json = false;
-};
-
-void add_identify(CLI::App& app, Action& action);
-[[nodiscard]] int run_identify_stiffness(const IdentifyStiffnessOptions& options);
-[[nodiscard]] int run_identify_damping(const IdentifyDampingOptions& options);
-[[nodiscard]] int run_identify_release(const IdentifyReleaseOptions& options);
-[[nodiscard]] int run_identify_poses(const IdentifyPosesOptions& options);
-[[nodiscard]] int run_identify_scene(const IdentifySceneOptions& options);
-[[nodiscard]] int run_identify_payload(const IdentifyPayloadOptions& options);
-[[nodiscard]] int run_identify_pluck(const IdentifyPluckOptions& options);
+/// The parts of the verb.
+void add_identify_stiffness(const Verb& verb);
+void add_identify_damping(const Verb& verb);
+void add_identify_pluck(const Verb& verb);
+void add_identify_payload(const Verb& verb);
+void add_identify_release(const Verb& verb);
+void add_identify_poses(const Verb& verb);
+void add_identify_scene(const Verb& verb);
 
 }  // namespace snug::app

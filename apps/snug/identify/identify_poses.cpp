@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/shipped.hpp"
 #include "apps/snug/identify/identify.hpp"
 #include "snug/core/write_file.hpp"
@@ -13,6 +14,14 @@
 
 namespace snug::app {
 namespace {
+
+struct IdentifyPosesOptions {
+  std::string input;
+  std::optional<std::string> cup;     ///< the law that is evaluated
+  std::optional<std::string> output;  ///< the law found
+  bool evaluate = false;              ///< fit nothing
+  bool json = false;
+};
 
 using identification::PoseErrors;
 using nlohmann::ordered_json;
@@ -50,8 +59,6 @@ void show_poses(const char* about, const PoseErrors& errors) {
   print("\n" + verdict_of(errors) + "\n");
 }
 
-}  // namespace
-
 int run_identify_poses(const IdentifyPosesOptions& options) {
   NamedFiles inputs = name_all("the input", {options.input});
   add_file(inputs, "--cup", options.cup);
@@ -82,6 +89,31 @@ int run_identify_poses(const IdentifyPosesOptions& options) {
                        parameter.standard_error, parameter.unit.c_str(), name_of(parameter.verdict)));
   show_poses("held back, each fifth pose predicted from the others", fit.held_back);
   return kSuccess;
+}
+
+constexpr const char* kPosesHelp =
+    R"(Another make of cup: a robot deforms it, a sensor reads the wrench. The law is the gradient of one potential, so it is passive;
+lateral and bending stiffness change with compression. Each fifth pose in turn is predicted from the others, beside a linear
+fit. Where it leaves more than half a standard deviation of a component it says that it does not explain the data.
+Columns x_mm, y_mm, z_mm, qw .. qz, fx_N .. fz_N, tx_Nmm .. tz_Nmm: docs/formats.md, cup poses; theory: docs/theory/cup.md, section 8.
+Examples:
+  snug identify poses scenarios/examples/cup-poses.csv --json
+  snug identify poses scenarios/examples/cup-poses.csv -o law.yaml
+  snug identify poses scenarios/examples/cup-poses.csv --cup scenarios/cups/other-make.yaml --evaluate)";
+
+}  // namespace
+
+void add_identify_poses(const Verb& verb) {
+  const Verb part = verb.part("poses", "a cup's law from wrenches in many poses", kPosesHelp);
+  IdentifyPosesOptions& options = part.runs(run_identify_poses);
+  part.option("poses", options.input, "FILE.csv", "poses and wrenches").required();
+  const OptionRow cup = part.option("--cup", options.cup, "CUP.yaml", "the law that is evaluated");
+  const OptionRow evaluate =
+      part.flag("--evaluate", options.evaluate, "fit nothing: only what the law of --cup predicts");
+  cup.needs(evaluate);
+  evaluate.needs(cup);
+  part.option("-o,--output", options.output, "FILE.yaml", "the law found").excludes(evaluate);
+  add_json(part, options.json);
 }
 
 }  // namespace snug::app

@@ -16,6 +16,11 @@
 namespace snug::app {
 namespace {
 
+struct IdentifyReleaseOptions : IdentifyOptions {
+  std::vector<std::string> inputs;
+  bool evaluate = false;  ///< only what the cup of the scenario predicts
+};
+
 using identification::CupReleaseFit;
 using identification::ReleaseErrors;
 using identification::ReleaseMassError;
@@ -80,8 +85,6 @@ void show_release(const CupReleaseFit& fit) {
   show_release("held back, each mass predicted from the others", fit.held_back);
 }
 
-}  // namespace
-
 int run_identify_release(const IdentifyReleaseOptions& options) {
   const std::string scenario = find_scenario(options.scenario.value_or("box-demonstrator"));
   const model::CupParams cup = model::load_scenario(scenario).cup;
@@ -114,6 +117,28 @@ int run_identify_release(const IdentifyReleaseOptions& options) {
   else
     show_release(fit);
   return kSuccess;
+}
+
+constexpr const char* kReleaseHelp =
+    R"(Each recording: a box at rest under a vertical cup, from the moment at which the vacuum is switched off (blow-off on).
+Columns mass_kg, rep, t_s, E_z_m (gripper), B_z_m (box), and S_z_m (lip) if it was tracked; further ones are ignored.
+Three masses or more. Each mass in turn is left out and predicted; standard errors are the jackknife over masses.
+The model: docs/theory/cup.md, section 6. Units: docs/scenario.md, cup.
+Examples:
+  snug identify release scenarios/examples/releases.csv --json
+  snug identify release scenarios/examples/releases.csv -o cup.yaml
+  snug identify release scenarios/examples/releases.csv --evaluate)";
+
+}  // namespace
+
+void add_identify_release(const Verb& verb) {
+  const Verb part = verb.part("release", "how the cup lets go, from recorded releases", kReleaseHelp);
+  IdentifyReleaseOptions& options = part.runs(run_identify_release);
+  part.option("recordings", options.inputs, "FILE.csv", "recorded releases").required();
+  part.flag("--evaluate", options.evaluate, "fit nothing: only what the cup predicts");
+  part.option("--scenario", options.scenario, "SCENARIO.yaml",
+              "whose cup is evaluated, or is the first guess (default: scenarios/box-demonstrator.yaml)");
+  add_identify_result(part, options);
 }
 
 }  // namespace snug::app

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/identify/identify.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
@@ -19,6 +20,21 @@
 
 namespace snug::app {
 namespace {
+
+struct IdentifySceneOptions {
+  std::string task;
+  std::vector<std::string> recordings;                        ///< those of the task unless given
+  bool floor = false;                                         ///< only the error that noise of the start sets
+  bool evaluate = false;                                      ///< only the errors of the task's present values
+  std::optional<std::uint64_t> global, local, scatter, seed;  ///< instead of the task's
+  std::optional<std::string> log;                             ///< of points tried
+  std::optional<std::string> output;                          ///< the task with the values found
+  std::optional<std::string> scenario;                        ///< the scenario with the values found
+  std::optional<std::string> page;                            ///< what was found and what it improved
+  std::optional<int> threads;                                 ///< absent: all cores
+  bool profile = false;                                       ///< intervals by the profile of the sum of squares
+  bool json = false;
+};
 
 using identification::SceneError;
 using identification::SceneExperiment;
@@ -53,8 +69,6 @@ int evaluate(const SceneExperiment& experiment, bool floor, bool json) {
   print(json ? format_json(error) : format_table(error));
   return error.failed == error.recordings ? kRunFailed : kSuccess;
 }
-
-}  // namespace
 
 int run_identify_scene(const IdentifySceneOptions& options) {
   model::SceneTask task = model::load_scene_task(options.task);
@@ -93,6 +107,40 @@ int run_identify_scene(const IdentifySceneOptions& options) {
   }
   print(options.json ? format_json(fit) : format_table(fit));
   return fit.is_trusted ? kSuccess : kRunFailed;
+}
+
+constexpr const char* kSceneHelp =
+    R"(The task names a scenario, the bodies that were recorded, and which numbers of the scenario are open, with bounds. First
+comes what each of them changes; combinations that the recordings cannot tell are named and left alone. Then the search, and
+standard errors. Each fifth recording is held back and predicted. Task files: docs/identification.md.
+Examples:
+  snug identify scene scenarios/tosses/task.yaml --recordings scenarios/tosses/example.csv --evaluate --json
+  snug identify scene scenarios/tosses/task.yaml --recordings scenarios/tosses/example.csv --local 10 --log points.csv --page found.html)";
+
+}  // namespace
+
+void add_identify_scene(const Verb& verb) {
+  const Verb part = verb.part("scene", "numbers of a scenario, from recordings of its bodies", kSceneHelp);
+  IdentifySceneOptions& options = part.runs(run_identify_scene);
+  part.option("task", options.task, "TASK.yaml", "what is open, and what was recorded").required();
+  part.option("--recordings", options.recordings, "FILE", "instead of those that the task names");
+  part.flag("--evaluate", options.evaluate, "only the errors of the task's present values on all recordings");
+  part.flag("--floor", options.floor, "only the error that noise of the start alone sets, at the present values")
+      .excludes({"--evaluate"});
+  part.option("--scatter", options.scatter, "N", "points spread over the bounds first", whole(0, 1000000));
+  part.option("--global", options.global, "N", "evaluations of the global search", whole(0, 1000000));
+  part.option("--local", options.local, "N", "evaluations of the local search", whole(0, 1000000));
+  part.option("--seed", options.seed, "N", "of the searches", whole(0));
+  part.option("--log", options.log, "FILE.csv",
+              "points tried are added to it; what is in it already is not computed again");
+  add_threads(part, options.threads);
+  part.option("-o,--output", options.output, "TASK.yaml", "the task with the values found");
+  part.flag("--profile", options.profile,
+            "95 % intervals by the profile likelihood: each value with all others fitted again (takes longer)");
+  part.option("--scenario", options.scenario, "SCENARIO.yaml",
+              "the scenario with the values found, and with what they leave uncertain");
+  part.option("--page", options.page, "FILE.html", "what was found, and what it improves on the recordings held back");
+  add_json(part, options.json);
 }
 
 }  // namespace snug::app

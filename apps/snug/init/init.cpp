@@ -9,6 +9,7 @@
 
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/shipped.hpp"
+#include "apps/snug/command_line/verbs.hpp"
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
@@ -31,9 +32,10 @@ constexpr std::array kKinds = {
              "snug report run.h5 -o run.html\n"},
 };
 
-}  // namespace
-
-std::span<const InitKind> init_kinds() { return kKinds; }
+struct InitOptions {
+  std::string kind;    ///< name of an InitKind
+  std::string folder;  ///< to write into; made when it is not there
+};
 
 int run_init(const InitOptions& options) {
   const auto kind = std::ranges::find_if(kKinds, [&](const InitKind& known) { return options.kind == known.name; });
@@ -51,6 +53,29 @@ int run_init(const InitOptions& options) {
   print(fmt::format("{} is written. Next:\n\ncd {}\n{}\nEvery key: docs/scenario.md\n", file.string(), folder.string(),
                     kind->next));
   return kSuccess;
+}
+
+constexpr const char* kInitExamples = R"(
+Examples:
+  snug init cell my-cell
+  snug init pallet my-pallet
+  snug init scene my-scene)";
+
+}  // namespace
+
+std::span<const InitKind> init_kinds() { return kKinds; }
+
+void add_init(CLI::App& app, Action& action) {
+  std::vector<std::string> names;
+  std::string footer = "Kinds:\n";
+  for (const InitKind& kind : kKinds) {
+    names.emplace_back(kind.name);
+    footer += fmt::format("  {:<8} {}\n", kind.name, kind.description);
+  }
+  const Verb verb(app, action, "init", "write a small scenario with comments to begin with", footer + kInitExamples);
+  InitOptions& options = verb.runs(run_init);
+  verb.option("kind", options.kind, "KIND", "what to begin with, see below", one_of(names)).required();
+  verb.option("folder", options.folder, "DIR", "where to write it; made when it is not there").required();
 }
 
 }  // namespace snug::app

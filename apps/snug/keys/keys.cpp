@@ -1,20 +1,25 @@
 // keys: makes the keys by which a served cell and its controllers know each other.
-#include "apps/snug/keys/keys.hpp"
+#include "apps/snug/command_line/verbs.hpp"
 
 #include <fmt/format.h>
-
 #include <filesystem>
+#include <optional>
+#include <string>
 
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/verb.hpp"
 #include "snug/click/keys.hpp"
 #include "snug/core/input_error.hpp"
 
 namespace snug::app {
 namespace {
 
-constexpr const char* kController = "controller";
+struct KeysOptions {
+  std::string folder;
+  std::optional<std::string> name;  ///< one more that may drive; absent: the served cell's and a controller's
+};
 
-}  // namespace
+constexpr const char* kController = "controller";
 
 int run_keys(const KeysOptions& options) {
   const std::filesystem::path folder = options.folder;
@@ -41,6 +46,24 @@ int run_keys(const KeysOptions& options) {
                   "{0}/controller.key         may drive what is served with --keys {0}\n",
                   options.folder));
   return kSuccess;
+}
+
+constexpr const char* kKeysExamples = R"(Examples:
+  snug keys keys                         # of a served cell and of one controller
+  snug keys keys --add camera            # of one more
+  snug serve scenarios/box-demonstrator.yaml --click tcp://0.0.0.0:5555 --keys keys
+  snug control program.csv --click tcp://127.0.0.1:5555 --keys keys/controller.key_secret     # elsewhere: its address
+The folder of another machine needs server.key and its own NAME.key_secret, never server.key_secret. A controller is shut
+out by removing its NAME.key and starting the served cell again.)";
+
+}  // namespace
+
+void add_keys(CLI::App& app, Action& action) {
+  const Verb verb(app, action, "keys", "make the keys by which a served cell and its controllers know each other",
+                  kKeysExamples);
+  KeysOptions& options = verb.runs(run_keys);
+  verb.option("folder", options.folder, "DIR", "where they go; made when it is not there").required();
+  verb.option("--add", options.name, "NAME", "a pair for one more controller or observer");
 }
 
 }  // namespace snug::app

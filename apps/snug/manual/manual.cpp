@@ -1,11 +1,11 @@
 // manual: the manual page, made from what `--help` of each verb says.
-#include "apps/snug/manual/manual.hpp"
+#include "apps/snug/command_line/verbs.hpp"
+
+#include "apps/snug/command_line/command_list.hpp"
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/version.hpp"
 
 #include <fmt/format.h>
-
-#include <CLI/CLI.hpp>
 
 namespace snug::app {
 namespace {
@@ -67,8 +67,7 @@ std::string usage_of(const Command& command) {
   return usage + "\n";
 }
 
-}  // namespace
-
+/// In the language of man(7).
 std::string format_manual(const std::vector<Command>& commands, const std::string& version) {
   std::string text;
   for (const Command& command : commands) {
@@ -86,14 +85,13 @@ std::string format_manual(const std::vector<Command>& commands, const std::strin
   return text;
 }
 
+}  // namespace
+
 void add_manual(CLI::App& app, Action& action) {
-  CLI::App& verb = *app.add_subcommand("manual", "print this manual in the language of man(7)");
-  verb.footer(kManualExamples);
-  verb.callback([&app, &action] {
-    action = [&app] {
-      print(format_manual(list_commands(app), version_text()));
-      return kSuccess;
-    };
+  const Verb verb(app, action, "manual", "print this manual in the language of man(7)", kManualExamples);
+  verb.acts([&app] {
+    print(format_manual(list_commands(app), version_text()));
+    return kSuccess;
   });
 }
 

@@ -1,16 +1,31 @@
 // measure: a virtual experiment: a simulation becomes measurements with stated sensors.
-#include "apps/snug/measure/measure.hpp"
+#include "apps/snug/command_line/verbs.hpp"
 
+#include <cstdint>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/verb.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/validation/measure.hpp"
 
 namespace snug::app {
 namespace {
+
+struct MeasureOptions {
+  std::vector<std::string> recordings;
+  std::string sensors;
+  std::string output;
+  std::optional<std::string> truth;  ///< JSON file for what was drawn
+  std::string date = "20000101T000000Z";
+  std::uint64_t seed = 1;
+  int repetitions = 1;
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -32,8 +47,6 @@ Json truth_as_json(const std::string& name, const validation::MeasureTruth& trut
             {"quat_wxyz", {quat.w(), quat.x(), quat.y(), quat.z()}}}},
           {"lost_bodies", truth.lost_bodies}};
 }
-
-}  // namespace
 
 int run_measure(const MeasureOptions& options) {
   if (options.recordings.size() > 1 && options.repetitions > 1)
@@ -69,6 +82,30 @@ int run_measure(const MeasureOptions& options) {
   writer.close();
   if (truth_file) write_file(std::move(*truth_file), truth.dump(2) + "\n");
   return kSuccess;
+}
+
+constexpr const char* kMeasureHelp =
+    R"(The archive has the layout of the demonstrator's (docs/formats.md): poses of motion capture with noise, losses and a frame
+of its own, wrenches with bias and drift, encoders; each source on a clock of its own. Several recordings become one
+repetition each; --repetitions measures one recording that often, with noise, losses and clocks drawn anew.
+Examples:
+  snug measure run.h5 --sensors scenarios/sensors/demonstrator.yaml -o measured.h5 --repetitions 3
+  snug measure run.h5 again.h5 --sensors scenarios/sensors/demonstrator.yaml --seed 7 -o two.h5 --truth truth.json)";
+
+}  // namespace
+
+void add_measure(CLI::App& app, Action& action) {
+  const Verb verb(app, action, "measure", "a virtual experiment: what sensors would have seen of a simulation",
+                  kMeasureHelp);
+  MeasureOptions& options = verb.runs(run_measure);
+  verb.option("recordings", options.recordings, "RECORDING.h5", "recordings of runs, each a repetition").required();
+  verb.option("--sensors", options.sensors, "SENSORS.yaml", "rates, noise, losses and clocks").required();
+  verb.option("-o,--output", options.output, "FILE.h5", "the archive to write").required();
+  verb.option("--repetitions", options.repetitions, "N", "of one recording", whole(1, 100));
+  verb.option("--seed", options.seed, "N", "of noise, losses, clocks and frames", whole(0));
+  verb.option("--date", options.date, "YYYYMMDDTHHMMSSZ",
+              "of the first repetition, for its name; the next ones are 20 minutes apart");
+  verb.option("--truth", options.truth, "FILE.json", "a file for what was drawn: clocks, bias, frames, losses");
 }
 
 }  // namespace snug::app

@@ -11,10 +11,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "apps/snug/command_line/interrupt.hpp"
 #include "apps/snug/command_line/outputs.hpp"
-#include "apps/snug/command_line/program_motion.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/shipped.hpp"
+#include "apps/snug/command_line/stop_signal.hpp"
 #include "apps/snug/command_line/version.hpp"
 #include "apps/snug/common/robot_warnings.hpp"
 #include "snug/core/input_error.hpp"
@@ -115,6 +115,31 @@ struct PackFiles {
     if (!plan->is_published()) plan->publish();
   }
 };
+
+/// The finished program again and again, where that was asked for.
+study::MonteCarloResult repeat_program(const PackOptions& options, const model::Scenario& scenario,
+                                       const session::SessionOptions& session, const session::SessionResult& result) {
+  if (!options.monte_carlo) return {};
+  study::MonteCarloOptions monte_carlo;
+  monte_carlo.count = *options.monte_carlo;
+  monte_carlo.seed = session.decision.seed;
+  monte_carlo.threads = session.threads;
+  monte_carlo.simulation = session.simulation;
+  return study::repeat(scenario, options.sequence, result.program, result.plan, monte_carlo);
+}
+
+/// Empty, or why the run failed.
+std::string failure_of(const session::SessionResult& result, const study::MonteCarloResult& repeated,
+                       bool wants_program) {
+  if (!result.failure.text.empty()) return result.failure.text;
+  const std::vector<std::string> rejected = session::rejected_items(result);
+  if (!rejected.empty()) return fmt::format("the load is not as it has to be: {}", fmt::join(rejected, "; "));
+  if (result.stop_reason == session::StopReason::NoFrame && !result.stopped.empty()) return result.stopped;
+  if (repeated.failed > 0)
+    return fmt::format("{} of {} repeated runs did not reach their end", repeated.failed, repeated.count);
+  if (wants_program && result.program.waypoints.empty()) return "nothing was packed: no program, no recording";
+  return {};
+}
 
 }  // namespace
 
@@ -234,30 +259,10 @@ int run_pack(const PackOptions& options) {
                   : study::run_trial(scenario, options.sequence, session, plant, progress, written);
   if (files.live) files.live->finish();
   const session::SessionResult& result = trial.session;
-  study::MonteCarloResult repeated;
-  if (options.monte_carlo) {
-    study::MonteCarloOptions monte_carlo;
-    monte_carlo.count = *options.monte_carlo;
-    monte_carlo.seed = session.decision.seed;
-    monte_carlo.threads = session.threads;
-    monte_carlo.simulation = session.simulation;
-    repeated = study::repeat(scenario, options.sequence, result.program, result.plan, monte_carlo);
-  }
-  const bool has_program = !result.program.waypoints.empty();
+  const study::MonteCarloResult repeated = repeat_program(options, scenario, session, result);
   if (files.plan) files.finish_plan(study::format_plan(result, true));
   print(options.json ? study::format_json(trial, repeated) : study::format_summary(trial, repeated));
-  std::string failure = result.failure.text;
-  const std::vector<std::string> rejected = session::rejected_items(result);
-  if (failure.empty() && !rejected.empty()) {
-    failure = fmt::format("the load is not as it has to be: {}", fmt::join(rejected, "; "));
-  }
-  if (failure.empty() && result.stop_reason == session::StopReason::NoFrame) failure = result.stopped;
-  if (failure.empty() && repeated.failed > 0) {
-    failure = fmt::format("{} of {} repeated runs did not reach their end", repeated.failed, repeated.count);
-  }
-  if (failure.empty() && !has_program && (options.program || options.record)) {
-    failure = "nothing was packed: no program, no recording";
-  }
+  const std::string failure = failure_of(result, repeated, options.program || options.record);
   if (result.stop_reason == session::StopReason::Interrupted) {
     std::fprintf(stderr, "snug: interrupted after %zu items\n", result.items.size());
   }

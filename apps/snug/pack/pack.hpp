@@ -6,6 +6,7 @@
 #include <string>
 
 #include "apps/snug/command_line/scenario_options.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/verb.hpp"
 #include "snug/camera/frame_source.hpp"
 #include "snug/study/trial.hpp"
@@ -21,14 +22,13 @@ struct PackOptions {
   std::optional<std::uint64_t> seed;
   std::optional<std::uint64_t> random_seed;  ///< the sequence is drawn: every box of the scenario, in random order
   double agent_patience = 600.0;             ///< s, for an answer of an agent in Python
-  std::optional<std::string> keys;           ///< folder or file: by which this program is known there
   std::string plant = "simulated";           ///< or where one is: click://HOST:PORT, click+ipc://PATH, ur://HOST
   std::optional<std::string> observe;        ///< CLICK address of who tells where boxes are, of ur://HOST
   bool is_dry = false;                       ///< of ur://HOST
   bool is_in_lockstep = false;               ///< of ur://HOST: a cell that is served, without a clock
   bool may_move = false;                     ///< a robot that is not on this machine
   double part_patience = 600.0;              ///< s, that a box may take to come to the aligner of ur://HOST
-  double patience = 10.0;                    ///< s, for its answers
+  ClientWords client;
   std::uint64_t plant_seed = 1;
   double decision_time = packing::DecisionRun{}.time;  ///< s
   std::optional<int> threads;                          ///< absent: all cores
@@ -39,7 +39,7 @@ struct PackOptions {
   std::string future = "order";
   std::string perception = "exact";
   std::optional<std::string> frames;         ///< folder or command, of perception frames
-  double frames_patience = 30.0;             ///< s, for the frame of a look
+  double frames_patience = 30.0;             ///< s, for the frame of a perception
   std::optional<std::string> frames_camera;  ///< file that says what camera they are of
   std::optional<double> frames_unit;         ///< m
   std::vector<std::string> plant_set;        ///< "KEY=VALUE", of the plant's scenario alone
@@ -55,9 +55,8 @@ struct PackOptions {
   bool json = false;
 };
 
-void add_pack(CLI::App& app, Action& action);
 /// What `pack` and `compare` have in common.
-void add_packing_options(CLI::App& verb, PackOptions& options);
+void add_packing_options(const Verb& verb, PackOptions& options);
 /// Every box of the scenario in an order drawn by seed and name. Throws InputError where a sequence has this name.
 [[nodiscard]] model::Sequence draw_order(const model::Scenario& scenario, const std::string& name, std::uint64_t seed);
 [[nodiscard]] session::SessionOptions make_session_options(const PackOptions& options, const SourcedScenario& loaded);

@@ -1,5 +1,5 @@
-// pack --perception frames: where the frames of its looks come from.
-#include "apps/snug/command_line/interrupt.hpp"
+// pack --perception frames: where its frames come from.
+#include "apps/snug/command_line/stop_signal.hpp"
 #include "apps/snug/pack/pack.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/frames/frame_source.hpp"

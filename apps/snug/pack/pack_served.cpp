@@ -1,9 +1,8 @@
 // pack_served: packs a plant that another program serves, scored by what its object sensors say.
 #include "apps/snug/pack/pack.hpp"
-#include "apps/snug/pack/watched_boxes.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/remote_plant/remote_plant.hpp"
-#include "snug/study/witness.hpp"
+#include "snug/study/watched_boxes.hpp"
 
 namespace snug::app {
 
@@ -24,12 +23,12 @@ study::Trial run_served_trial(const PackOptions& options, const model::Scenario&
   expect_options_of_a_served_plant(options, session);
   const perception::Kind kind = perception::kind_of(options.perception);
   remote_plant::RemotePlant plant(scenario, options.sequence,
-                                  {options.plant, options.patience, kind, options.plant_seed, session.simulation,
-                                   click::find_client_keys(options.keys), make_frames(options, scenario)});
+                                  {options.plant, options.client.patience, kind, options.plant_seed, session.simulation,
+                                   click::find_client_keys(options.client.keys), make_frames(options, scenario)});
   const study::Witness witness =
-      watch_boxes(scenario, options.sequence,
-                  {[&] { return plant.boxes(); }, [&](std::size_t item) { return plant.size_of(item); },
-                   [&](std::size_t item) { return plant.was_brought(item); }});
+      study::watch_boxes(scenario, options.sequence,
+                         {[&] { return plant.boxes(); }, [&](std::size_t item) { return plant.size_of(item); },
+                          [&](std::size_t item) { return plant.was_brought(item); }});
   study::Trial trial = study::run_trial(scenario, options.sequence, session, plant, witness, progress, files);
   trial.is_elsewhere = true;
   trial.plant.perception = kind;

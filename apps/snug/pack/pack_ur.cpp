@@ -4,16 +4,15 @@
 #include <cmath>
 #include <cstdio>
 
-#include "apps/snug/command_line/interrupt.hpp"
+#include "apps/snug/command_line/stop_signal.hpp"
 #include "apps/snug/pack/pack.hpp"
-#include "apps/snug/pack/watched_boxes.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/perception/camera_perception.hpp"
 #include "snug/remote_plant/box_observer.hpp"
 #include "snug/remote_ur/dry_run.hpp"
 #include "snug/remote_ur/remote_ur.hpp"
 #include "snug/remote_ur/rtde_link.hpp"
-#include "snug/study/witness.hpp"
+#include "snug/study/watched_boxes.hpp"
 
 namespace snug::app {
 namespace {
@@ -22,7 +21,7 @@ constexpr double kAtStart = 0.05;  ///< rad: a dry run begins where the simulate
 
 remote_ur::Endpoint ur_endpoint_of(const PackOptions& options) {
   remote_ur::Endpoint endpoint = *remote_ur::endpoint_of_ur(options.plant);
-  endpoint.patience = options.patience;
+  endpoint.patience = options.client.patience;
   if (!remote_ur::is_loopback_host(endpoint.host) && !options.may_move) {
     throw InputError("command line", "--plant", "'" + options.plant + "', which is not on this machine",
                      "--yes-this-moves-a-robot, when its cell is free of people and its emergency stop is at hand");
@@ -102,7 +101,7 @@ study::Trial run_ur_trial(const PackOptions& options, const model::Scenario& sce
                      "--observe ADDRESS, where boxes are told, or --perception frames or dead-reckoning");
   }
   std::optional<remote_plant::BoxObserver> observer;
-  if (options.observe) observer.emplace(scenario, options.sequence, *options.observe, options.patience);
+  if (options.observe) observer.emplace(scenario, options.sequence, *options.observe, options.client.patience);
   remote_ur::RemoteUrOptions with_robot = robot_options(options, session);
   with_robot.link = connect_robot(options, scenario);
   with_robot.perception =
@@ -125,7 +124,7 @@ study::Trial run_ur_trial(const PackOptions& options, const model::Scenario& sce
   }
   remote_ur::RemoteUr robot(scenario, options.sequence, std::move(with_robot));
   refuse_held_box(options, scenario, robot.read());
-  BoxSource source;
+  study::BoxSource source;
   source.boxes = [&]() -> std::vector<std::optional<perception::SceneBox>> {
     if (!observer) return robot.perceived();
     (void)observer->look();  // what was seen before stays
@@ -133,7 +132,7 @@ study::Trial run_ur_trial(const PackOptions& options, const model::Scenario& sce
   };
   source.size_of = [&](std::size_t item) { return observer ? observer->size_of(item) : robot.size_of(item); };
   source.was_brought = [&](std::size_t item) { return robot.was_brought(item); };
-  const study::Witness witness = watch_boxes(scenario, options.sequence, std::move(source));
+  const study::Witness witness = study::watch_boxes(scenario, options.sequence, std::move(source));
   study::Trial trial = study::run_trial(scenario, options.sequence, with_resume, robot, witness, progress, files);
   trial.is_elsewhere = true;
   trial.plant.perception = kind;

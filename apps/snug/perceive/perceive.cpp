@@ -1,13 +1,18 @@
-// perceive: a frame and what is expected in it, poses with covariance out.
-#include "apps/snug/perceive/perceive.hpp"
+// perceive: where boxes of known size are, from one depth frame.
+#include "apps/snug/command_line/verbs.hpp"
 
 #include <fmt/format.h>
-
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/ranges.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/shipped.hpp"
+#include "apps/snug/command_line/verb.hpp"
 #include "apps/snug/common/choose_camera.hpp"
 #include "snug/box_estimation/estimate_text.hpp"
 #include "snug/camera/frame_file.hpp"
@@ -17,6 +22,23 @@
 
 namespace snug::app {
 namespace {
+
+struct PerceiveOptions {
+  std::string frame;  ///< .png, .ply, .pcd or .h5
+  std::string scenario;
+  std::string expect;                      ///< placements (YAML)
+  std::optional<std::string> camera;       ///< name; absent: the scenario's first
+  std::vector<double> intrinsics;          ///< px: fx, fy, cx, cy; empty: the file's or the scenario's
+  std::optional<double> depth_unit;        ///< m
+  bool points_in_camera = false;           ///< PLY, PCD
+  std::string axes = "optical";            ///< of the camera's frame, of such points
+  std::optional<std::string> camera_file;  ///< what it says of the camera stands for the frame's and the scenario's
+  bool use_scenario_camera = false;        ///< also where the file has its own
+  double spread = 0.010;                   ///< m
+  double spread_deg = 3.0;
+  std::optional<std::string> output;  ///< JSON
+  bool json = false;
+};
 
 camera::FrameHints make_hints(const PerceiveOptions& options, const model::Scenario& scenario) {
   camera::FrameHints hints;
@@ -48,8 +70,6 @@ box_estimation::EstimateInput make_input(const PerceiveOptions& options, const m
   return input;
 }
 
-}  // namespace
-
 int run_perceive(const PerceiveOptions& options) {
   NamedFiles inputs = {{"the frame", options.frame},
                        {"--scenario", find_scenario(options.scenario)},
@@ -66,6 +86,54 @@ int run_perceive(const PerceiveOptions& options) {
   if (output) write_file(std::move(*output), box_estimation::format_json_with_heights(estimate));
   print(options.json ? format_json(estimate) : format_table(estimate));
   return estimate.fault == box_estimation::FrameFault::None ? kSuccess : kRunFailed;
+}
+
+constexpr const char* kPerceiveHelp =
+    R"(Reads depth alone: no labels, no colour, no truth. Boxes are fitted with the sizes that the scenario knows; covariances come from
+the errors that its camera states.
+FRAME is a PNG (16-bit grey), a PLY or a PCD (text or binary, organised or not) or an HDF5 of `snug camera`. Files of `snug camera` say
+where the camera is. For others a file beside the frame says it (NAME.json, .yaml or .yml, else camera.json, .yaml or .yml in its folder),
+or --camera-file; what they leave out is the scenario's camera, its intrinsics replaced by --intrinsics (docs/camera.md).
+EXPECT is a list of placements as `snug pack --plan` writes it: which box is believed to be where in the container. A box that is
+elsewhere is looked for: leave out boxes that are not in the container yet.
+Exit code 1: the frame itself cannot be used (too few points, or something stands in the view).
+Examples:
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --plan plan.json -o run.h5
+  snug camera run.h5 -o frame.png
+  snug perceive frame.png --scenario scenarios/box-demonstrator.yaml --expect plan.json --json
+  snug camera run.h5 -o frame.ply
+  snug perceive frame.ply --scenario scenarios/box-demonstrator.yaml --expect plan.json -o boxes.json
+Frames of other cameras: a PNG with --intrinsics FX FY CX CY and --depth-unit METRES, a PLY or PCD with --points-in-camera and --axes if
+need be. Where next to no point can be one of the camera, the message says what would fit: another unit, other axes, another frame.)";
+
+}  // namespace
+
+void add_perceive(CLI::App& app, Action& action) {
+  const Verb verb(app, action, "perceive", "where the boxes are, from a depth frame", kPerceiveHelp);
+  PerceiveOptions& options = verb.runs(run_perceive);
+  verb.option("frame", options.frame, "FILE", "of a depth camera").required();
+  verb.option("--scenario", options.scenario, "FILE.yaml", "with the cell, its camera and its boxes").required();
+  verb.option("--expect", options.expect, "FILE.yaml", "which box is believed to be where").required();
+  verb.option("--camera", options.camera, "NAME", "name in the scenario; without it the first");
+  verb.option("--intrinsics", options.intrinsics, "FX FY CX CY", "fx fy cx cy of the frame, pixels").expected(4);
+  verb.option(
+      "--depth-unit", options.depth_unit, "M",
+      "metres of a step of grey, or of a unit of a PLY or PCD that is not ours; without it 0.001 of a PNG, 1 of these",
+      within(1e-7, 1.0));
+  verb.flag("--points-in-camera", options.points_in_camera,
+            "the points of a PLY or PCD are in the camera's frame, not in the world's");
+  verb.option("--axes", options.axes, "NAME",
+              "of that frame: optical (z forward, y down), ros (x forward, z up) or opengl (z backward, y up)",
+              one_of({"optical", "ros", "opengl"}));
+  verb.option("--camera-file", options.camera_file, "FILE",
+              "optics, unit, axes and pose of the camera that took it, whatever the frame says: JSON or YAML");
+  verb.flag("--scenario-camera", options.use_scenario_camera,
+            "pose and optics of the scenario, whatever the file says");
+  verb.option("--spread", options.spread, "M", "standard deviation of what is believed, each coordinate",
+              within(1e-4, 1.0));
+  verb.option("--spread-deg", options.spread_deg, "DEG", "the same of the rotation", within(0.01, 180.0));
+  verb.option("-o,--output", options.output, "FILE.json", "the result as JSON, with the height map");
+  add_json(verb, options.json);
 }
 
 }  // namespace snug::app

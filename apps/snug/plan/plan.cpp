@@ -1,10 +1,15 @@
 // plan: one decision of a session once more, from the belief that it was made on.
-#include "apps/snug/plan/plan.hpp"
+#include "apps/snug/command_line/verbs.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <string>
 
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/ranges.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/shipped.hpp"
+#include "apps/snug/command_line/verb.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/packing/python_agent.hpp"
@@ -12,6 +17,14 @@
 
 namespace snug::app {
 namespace {
+
+struct PlanOptions {
+  std::string belief;
+  std::optional<std::string> item;  ///< absent: the one that was decided on
+  std::optional<double> decision_time;
+  std::optional<int> threads;  ///< absent: all cores
+  bool json = false;
+};
 
 /// Items that are in the cell can be planned.
 model::ItemIndex find_item(const planning::BeliefSnapshot& belief, const std::string& id) {
@@ -26,8 +39,6 @@ model::ItemIndex find_item(const planning::BeliefSnapshot& belief, const std::st
   throw InputError("command line", "--item", "'" + id + "'", expected);
 }
 
-}  // namespace
-
 int run_plan(const PlanOptions& options) {
   planning::PlanRequest request = planning::load_request(options.belief);
   request.item = find_item(request.belief, options.item.value_or(request.belief.items[request.item.slot()].id));
@@ -39,6 +50,28 @@ int run_plan(const PlanOptions& options) {
   const planning::Plan plan = planning::plan(request.belief, request.item, request.budget, work);
   print(options.json ? planning::format_plan_json(request, plan) : planning::format_plan_table(request, plan));
   return kSuccess;
+}
+
+constexpr const char* kPlanExamples = R"(Examples:
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant-seed 7 --save-belief beliefs
+  snug plan beliefs/0001-BOX027.json
+  snug plan beliefs/0001-BOX027.json --json
+  snug plan beliefs/0001-BOX027.json --decision-time 2
+The same belief, item and decision time come to the same plan, to the last digit.)";
+
+}  // namespace
+
+void add_plan(CLI::App& app, Action& action) {
+  const Verb verb(app, action, "plan", "repeat one decision of a session and say what was tried and why it lost",
+                  kPlanExamples);
+  PlanOptions& options = verb.runs(run_plan);
+  verb.option("belief", options.belief, "BELIEF.json", "what was believed then: a file of `snug pack --save-belief`")
+      .required();
+  verb.option("--item", options.item, "ID", "another item that is in the cell (default: the one that was decided on)");
+  verb.option("--decision-time", options.decision_time, "SECONDS",
+              "for deciding where the item goes, on one core (default: as then)", within(0.0, 3600.0));
+  add_threads(verb, options.threads);
+  add_json(verb, options.json);
 }
 
 }  // namespace snug::app

@@ -1,12 +1,16 @@
-// run: the program's controller and the cell, one period after the other, without a clock.
-#include "apps/snug/run/run.hpp"
+// run: a URScript program on the simulated cell, by the interpreter of the served controller, as fast as it goes.
+#include "apps/snug/command_line/verbs.hpp"
 
 #include <fmt/format.h>
-
 #include <atomic>
 #include <cstdio>
+#include <string>
 
+#include "apps/snug/command_line/ranges.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/stop_signal.hpp"
+#include "apps/snug/command_line/verb.hpp"
+#include "apps/snug/serve/serve.hpp"
 #include "apps/snug/serve/serve_ur.hpp"
 #include "apps/snug/serve/served_runs.hpp"
 #include "snug/core/input_error.hpp"
@@ -16,6 +20,12 @@
 
 namespace snug::app {
 namespace {
+
+struct RunOptions {
+  std::string program;   ///< URScript
+  ServeOptions cell;     ///< scenario, sequence, plant, recording, model
+  double until = 600.0;  ///< s
+};
 
 constexpr double kSettle = 1.0;  // s, behind the program's end: what was let go comes to rest
 
@@ -28,8 +38,6 @@ std::string load_program(const std::string& file) {
   if (program->is_secondary()) throw InputError(file, "sec", "a secondary program", "one that may move the robot: def");
   return text;
 }
-
-}  // namespace
 
 int run_script(const RunOptions& options) {
   const std::string text = load_program(options.program);
@@ -64,6 +72,29 @@ int run_script(const RunOptions& options) {
   controller.end(failure.empty() ? end : fmt::format("the program failed: {}", failure));
   if (!has_ended) std::fprintf(stderr, "snug: failed: %s\n", (failure.empty() ? end : failure).c_str());
   return has_ended && !runs.has_failed() ? kSuccess : kRunFailed;
+}
+
+constexpr const char* kRunExamples =
+    R"(Outputs 0 and 1 are vacuum and blow-off, input 0 says that the vacuum is reached, input 1 that a box stands at the aligner.
+Popups are closed at once. Exit code 0: the program came to its end; 1: it failed, was stopped, or the cell did; 2: the input cannot be used.
+Examples:
+  snug export program.csv --scenario scenarios/box-demonstrator.yaml --format urscript -o program.script
+  snug run program.script scenarios/box-demonstrator.yaml --sequence 1
+  snug run program.script scenarios/box-demonstrator.yaml --sequence 1 --skip BOX024,BOX025
+  snug run program.script scenarios/box-demonstrator.yaml --sequence 1 --model ur10e -o run.h5 --json)";
+
+}  // namespace
+
+void add_run(CLI::App& app, Action& action) {
+  const Verb verb(app, action, "run", "run a URScript program on the simulated cell", kRunExamples);
+  RunOptions& options = verb.runs(run_script);
+  ServeOptions& cell = options.cell;
+  verb.option("program", options.program, "PROGRAM.script", "URScript program").required();
+  add_cell(verb, cell);
+  verb.option("--skip", cell.skipped, "BOXES",
+              "boxes of the sequence that do not come, with commas between: those that the session left out")
+      .delimiter(',');
+  verb.option("--until", options.until, "SECONDS", "stop the program at this simulated time", within(0.0, 86400.0));
 }
 
 }  // namespace snug::app

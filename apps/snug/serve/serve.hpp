@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/snug/command_line/scenario_options.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/verb.hpp"
 #include "snug/serve/server.hpp"
 #include "snug/served_cell/server.hpp"
@@ -27,11 +28,8 @@ struct ServeOptions {
   std::optional<std::string> sequence;  ///< absent: the first
   std::vector<std::string> skipped;     ///< boxes of the sequence that do not come
   std::optional<std::string> robot;     ///< absent: the scenario's
-  std::optional<std::string> cup;       ///< holding | phases
-  std::optional<std::uint64_t> seed;
+  PhysicsWords physics;
   std::optional<std::uint64_t> plant_seed;  ///< the cell is a plant that is packed
-  std::optional<double> dt;                 ///< s
-  std::optional<double> record_period;      ///< s
   std::string rpy = "xyz";
   std::vector<std::string> controls = {"velocity"};
   served_cell::ServedCellSettings cell;
@@ -43,13 +41,13 @@ struct ServeOptions {
   bool once = false;                  ///< ends with the first run that its controller does not reset
   std::optional<std::string> record;  ///< HDF5 file; of further runs: with their number before the ending
   bool json = false;
-  bool shows = false;  ///< a page with the run
-  bool opens_browser = true;
+  bool shows = false;     ///< a page with the run
+  bool is_quiet = false;  ///< opens no browser
   serve::ServerSettings page;
 };
 
-void add_serve(CLI::App& app, Action& action);
-/// Serves until Ctrl-C, or with `once` until the first run is over.
-[[nodiscard]] int run_serve(const ServeOptions& options);
+/// What `serve` and `run` have: scenario and its changes, --sequence, --plant-seed, --model, -o and --json.
+/// The row of --model.
+OptionRow add_cell(const Verb& verb, ServeOptions& options);
 
 }  // namespace snug::app

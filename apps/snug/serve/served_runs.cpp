@@ -12,7 +12,6 @@
 #include "apps/snug/common/robot_warnings.hpp"
 #include "apps/snug/view/view.hpp"
 #include "snug/core/input_error.hpp"
-#include "snug/model/spin.hpp"
 #include "snug/record/writer.hpp"
 #include "snug/runs/result_json.hpp"
 #include "snug/runs/run_table.hpp"
@@ -44,10 +43,7 @@ void skip(model::Scenario& scenario, const std::string& sequence, const std::vec
 model::Scenario load(const ServeOptions& options, std::optional<double> tick) {
   model::Scenario scenario = load_changed(options.scenario, options.changes);
   if (tick) scenario.controller.tick = *tick;
-  if (options.dt) scenario.time_step = *options.dt;
-  model::check_spins(scenario);
-  if (options.seed) scenario.seed = *options.seed;
-  if (options.record_period) scenario.record_period = *options.record_period;
+  apply(options.physics, scenario);
   if (!scenario.robot) throw InputError(scenario.source_name, "robot", "", "a robot, to be driven");
   if (scenario.sequences.empty()) throw InputError(scenario.source_name, "sequences", "", "a sequence of boxes");
   print_robot_warnings(scenario);
@@ -61,7 +57,7 @@ model::Scenario load(const ServeOptions& options, std::optional<double> tick) {
 cell::SimulationOptions simulation_options(const ServeOptions& options, const model::Scenario& scenario) {
   cell::SimulationOptions simulation;
   simulation.robot = options.robot.value_or(scenario.robot->name);
-  if (options.cup) simulation.cup = cup::cup_mode_of(*options.cup, "command line");
+  if (options.physics.cup) simulation.cup = cup::cup_mode_of(*options.physics.cup, "command line");
   return simulation;
 }
 
@@ -112,7 +108,7 @@ void ServedRuns::begin_page() {
   live_.emplace(std::filesystem::path(options_.scenario).stem().string(), 0.0);
   shown_ = std::make_unique<ShownRun>(*live_);
   page_.emplace(options_.page, serve::Content{std::string(viewer_page()), {}, &*live_, true});
-  announce(page_->address(), options_.opens_browser);
+  announce(page_->address(), !options_.is_quiet);
   page_thread_ = std::thread([this] { page_->run(); });
 }
 

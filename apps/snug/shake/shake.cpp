@@ -1,71 +1,55 @@
-// shake: drives a packed container and says which boxes shift, tip or fall.
-#include "apps/snug/shake/shake.hpp"
+// shake: whether a load survives the ride.
+#include "apps/snug/command_line/verbs.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
+#include <string>
 
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/ranges.hpp"
+#include "apps/snug/command_line/scenario_options.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/shipped.hpp"
+#include "apps/snug/command_line/verb.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
-#include "snug/record/reader.hpp"
-#include "snug/report/page.hpp"
-#include "snug/report/plan_view.hpp"
-#include "snug/report/table.hpp"
-#include "snug/runs/shake.hpp"
+#include "snug/runs/shake_report.hpp"
 
 namespace snug::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
-constexpr double kWalls = 0.1;  ///< m, beyond which a box of a recording is not of the load
-
-struct Load {
-  model::Scenario scenario;
-  std::vector<model::PlacementEntry> boxes;
+struct ShakeOptions {
+  std::string load;                     ///< recording (.h5), or placements
+  std::optional<std::string> scenario;  ///< of the placements
+  ScenarioChanges changes;
+  std::string profile;
+  double level = 0.5;  ///< g
+  std::string hold = "none";
+  int draws = 4;
+  std::uint64_t seed = 1;
+  double shift = 20.0;              ///< mm
+  double tilt = 6.0;                ///< degrees
+  std::optional<double> time_step;  ///< s
+  std::optional<int> threads;       ///< absent: all cores
+  std::optional<std::string> page;
+  bool json = false;
 };
 
-/// What lies in the target in the last frame.
-Load load_recorded(const std::string& path) {
-  record::RecordingReader reader(path);
-  if (reader.times().empty()) throw InputError(path, "", "a recording without frames", "at least one frame");
-  if (reader.header().scenario_text.empty()) throw InputError(path, "", "a recording without scenario", "one with it");
-  Load load{model::parse_scenario(reader.header().scenario_text, "scenario of " + path), {}};
-  const model::Container* container = model::find_container(load.scenario, load.scenario.target);
-  if (container == nullptr) throw InputError(path, "target", "nothing", "a scenario with a container");
-  record::Frame frame;
-  reader.read_frame(reader.frame_count() - 1, frame);
-  const Vector3 half = 0.5 * container->inner_size + Vector3::Constant(kWalls);
-  for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
-    const std::string& name = reader.header().bodies[i].name;
-    if (!frame.bodies[i].present || model::find_parcel(load.scenario, name) == nullptr) continue;
-    const Pose X_TP = container->X_WT.inverse() * frame.bodies[i].X_WB.pose();
-    if ((X_TP.p.head<2>().cwiseAbs().array() > half.head<2>().array()).any() || X_TP.p.z() < 0.0) continue;
-    load.boxes.push_back({name, X_TP, 0});
-  }
-  if (load.boxes.empty()) throw InputError(path, "", "no box in the container in the end", "a load");
-  return load;
-}
+constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-Load load_of(const ShakeOptions& options) {
+runs::RecordedLoad load_of(const ShakeOptions& options) {
   if (std::filesystem::path(options.load).extension() == ".h5") {
     if (options.scenario || options.changes.any()) {
       throw InputError("command line", "--scenario", "a scenario beside a recording", "none: a recording has its own");
     }
-    return load_recorded(options.load);
+    return runs::load_recorded(options.load);
   }
   if (!options.scenario) {
     throw InputError("command line", "--scenario", "nothing", "the scenario of the placements " + options.load);
   }
-  Load load{load_changed(*options.scenario, options.changes), {}};
+  runs::RecordedLoad load{load_changed(*options.scenario, options.changes), {}};
   load.boxes = model::load_placements(find_shipped(options.load), load.scenario);
   return load;
 }
@@ -93,129 +77,59 @@ runs::ShakeOptions run_options(const ShakeOptions& options) {
   return run;
 }
 
-const runs::ShakenBox& worst_box(const runs::ShakeRun& run, const ShakeOptions& options) {
-  return *std::ranges::max_element(run.boxes, {}, [&](const runs::ShakenBox& box) {
-    return box.fell ? std::numeric_limits<double>::infinity()
-                    : std::max(1e3 * box.shift / options.shift, kDegrees * box.tilt / options.tilt);
-  });
-}
-
-int moved_boxes(const runs::ShakeRun& run, const ShakeOptions& options) {
-  return static_cast<int>(std::ranges::count_if(run.boxes, [&](const runs::ShakenBox& box) {
-    return box.fell || 1e3 * box.shift > options.shift || kDegrees * box.tilt > options.tilt;
-  }));
-}
-
-/// Of each motion the friction with which it went worst, in the order of the profile.
-std::vector<const runs::ShakeRun*> worst_of_motions(const runs::ShakeResult& result) {
-  std::vector<const runs::ShakeRun*> worst;
-  for (const runs::ShakeRun& run : result.runs) {
-    if (worst.empty() || worst.back()->motion != run.motion) {
-      worst.push_back(&run);
-    } else if (run.worst > worst.back()->worst) {
-      worst.back() = &run;
-    }
-  }
-  return worst;
-}
-
-std::string verdict_of(const runs::ShakeResult& result, const ShakeOptions& options) {
-  if (result.holds())
-    return fmt::format("holds: {} boxes within {:g} mm and {:g} degrees", result.boxes.size(), options.shift,
-                       options.tilt);
-  const runs::ShakeRun& run = result.runs[result.worst];
-  const runs::ShakenBox& box = worst_box(run, options);
-  return fmt::format(
-      "does not hold: {} of {} boxes beyond {:g} mm or {:g} degrees in '{}', friction x {:.2f}; worst {} ({})",
-      moved_boxes(run, options), result.boxes.size(), options.shift, options.tilt, run.motion, run.friction, box.id,
-      box.fell ? std::string("falls") : fmt::format("{:.0f} mm, {:.1f} degrees", 1e3 * box.shift, kDegrees * box.tilt));
-}
-
-std::string format_text(const runs::ShakeResult& result, const ShakeOptions& options) {
-  std::string text = fmt::format("load {}, profile {}, hold {}, {} boxes\n\n", options.load, options.profile,
-                                 options.hold, result.boxes.size());
-  text += fmt::format("{:<34} {:>8} {:>9} {:>9} {:>9}  {}\n", "motion", "friction", "shift, mm", "left, mm",
-                      "tilt, deg", "worst box");
-  for (const runs::ShakeRun* run : worst_of_motions(result)) {
-    const runs::ShakenBox& box = worst_box(*run, options);
-    text += fmt::format("{:<34} {:>8.2f} {:>9.1f} {:>9.1f} {:>9.1f}  {}{}\n", run->motion, run->friction,
-                        1e3 * box.shift, 1e3 * box.remaining, kDegrees * box.tilt, box.id, box.fell ? " falls" : "");
-  }
-  return text + "\n" + verdict_of(result, options) + "\n";
-}
-
-std::string format_json(const runs::ShakeResult& result, const ShakeOptions& options) {
-  Json json{{"holds", result.holds()},      {"verdict", verdict_of(result, options)}, {"profile", options.profile},
-            {"hold", options.hold},         {"max_shift_mm", options.shift},          {"max_tilt_deg", options.tilt},
-            {"simulated_s", result.seconds}};
-  for (const runs::ShakeRun& run : result.runs) {
-    Json one{{"motion", run.motion}, {"friction", run.friction}, {"sound", run.is_sound}, {"boxes", Json::array()}};
-    for (const runs::ShakenBox& box : run.boxes) {
-      one["boxes"].push_back({{"box", box.id},
-                              {"shift_mm", 1e3 * box.shift},
-                              {"remaining_mm", 1e3 * box.remaining},
-                              {"tilt_deg", kDegrees * box.tilt},
-                              {"fell", box.fell}});
-    }
-    json["runs"].push_back(std::move(one));
-  }
-  return json.dump(2) + "\n";
-}
-
-report::Markup view_of(const runs::ShakeResult& result, const std::vector<Pose>& X_TP) {
-  std::vector<report::BoxOutline> outlines;
-  for (std::size_t i = 0; i < X_TP.size(); ++i) {
-    outlines.push_back(report::outline_of(result.boxes[i], result.sizes[i], X_TP[i]));
-  }
-  return report::plan_view(result.inner_size, outlines);
-}
-
-/// From the side: y of the drawing is up.
-report::Markup side_view_of(const runs::ShakeResult& result, const std::vector<Pose>& X_TP) {
-  Matrix3 R_VT;  // V: x along Ty, y along Tz, seen along Tx
-  R_VT << 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0;
-  const Vector3 size = R_VT * result.inner_size;
-  std::vector<report::BoxOutline> outlines;
-  for (std::size_t i = 0; i < X_TP.size(); ++i) {
-    Pose X_VP{R_VT * X_TP[i].R, R_VT * X_TP[i].p};
-    X_VP.p.y() -= 0.5 * size.y();
-    outlines.push_back(report::outline_of(result.boxes[i], result.sizes[i], X_VP));
-  }
-  return report::plan_view(size, outlines);
-}
-
-std::string format_page(const runs::ShakeResult& result, const ShakeOptions& options) {
-  const runs::ShakeRun& run = result.runs[result.worst];
-  report::Markup content = report::paragraph(report::bold(verdict_of(result, options)));
-  content += report::heading(2, fmt::format("The worst moment: {:.2f} s into '{}', friction x {:.2f}", run.worst_time,
-                                            run.motion, run.friction));
-  content += report::side_by_side({report::figure("From above", view_of(result, run.worst_X_TP)),
-                                   report::figure("From the side, along x", side_view_of(result, run.worst_X_TP))});
-  report::Table table{
-      {{"motion", true}, {"friction"}, {"shift, mm"}, {"left, mm"}, {"tilt, deg"}, {"worst box", true}}, {}, {}};
-  for (const runs::ShakeRun* one : worst_of_motions(result)) {
-    const runs::ShakenBox& box = worst_box(*one, options);
-    table.rows.push_back({one->motion, report::number(one->friction, 2), report::number(1e3 * box.shift, 1),
-                          report::number(1e3 * box.remaining, 1), report::number(kDegrees * box.tilt, 1),
-                          box.id + (box.fell ? " falls" : "")});
-  }
-  content += report::heading(2, "Every motion, with the friction with which it went worst") + report::as_markup(table);
-  return report::make_page("Transport: " + options.load, content);
-}
-
-}  // namespace
-
 int run_shake(const ShakeOptions& options) {
-  const Load load = load_of(options);
+  const runs::RecordedLoad load = load_of(options);
   NamedFiles inputs;
   if (options.scenario) inputs = files_of(*options.scenario, options.changes, load.scenario);
   add_file(inputs, "the load", options.load);
   std::optional<OutputFile> page = reserve(inputs, options.page);
   const std::vector<runs::ShakeMotion> profile = profile_of(options, load.scenario);
   const runs::ShakeResult result = runs::shake(load.scenario, load.boxes, profile, run_options(options));
-  if (page) write_file(std::move(*page), format_page(result, options));
-  print(options.json ? format_json(result, options) : format_text(result, options));
+  const runs::ShakeWords words{options.load, options.profile, options.hold, options.shift, options.tilt};
+  if (page) write_file(std::move(*page), runs::format_shake_page(result, words));
+  print(options.json ? runs::format_shake_json(result, words) : runs::format_shake_text(result, words));
   return result.holds() ? kSuccess : kRunFailed;
+}
+
+constexpr const char* kShakeExamples = R"(Profiles:
+  conveyor    a belt at 0.5 m/s: starts and stops with 2 m/s2, an emergency stop with 5, along each axis
+  truck       0.8 g forward (the longer side), 0.5 g to the rear and to either side, a second each (EN 12195-1)
+  eumos40509  --level g to all four sides, for 0.3 s with ramps of 50 ms; usual levels are 0.3, 0.5 and 0.8
+  tilt        slowly by the angle whose tangent is --level, to all four sides
+  FILE.csv    a head of time_s and any of ax, ay, az (m/s2, of the container along its axes), roll_deg, pitch_deg; then rows
+Every motion begins with the load at rest, once with the scenario's friction and once with each draw of its uncertainty;
+the worst counts. Holds: film draws each box back to where it stood by 2 N a millimetre, by 150 N at most; straps press the
+boxes that carry no other down by 600 N together. The container itself stands fast on what carries it.
+Exit code 0: the load holds; 1: a box shifts, tips or falls; 2: the input cannot be used.
+Examples:
+  snug shake scenarios/demo-placements.yaml --scenario scenarios/box-demonstrator.yaml --profile conveyor
+  snug shake scenarios/demo-placements.yaml --scenario scenarios/box-demonstrator.yaml --profile eumos40509 --level 0.3 --page shake.html
+  snug shake run.h5 --profile truck --json)";
+
+}  // namespace
+
+void add_shake(CLI::App& app, Action& action) {
+  const Verb verb(app, action, "shake", "drive a packed container: say which boxes shift, tip or fall", kShakeExamples);
+  ShakeOptions& options = verb.runs(run_shake);
+  verb.option("load", options.load, "RUN.h5|LOAD",
+              "recording of a packed container (its last frame), or a list of placements")
+      .required();
+  verb.option("--scenario", options.scenario, "SCENARIO.yaml", "scenario of the placements; a recording has its own");
+  add_scenario_changes(verb, options.changes);
+  verb.option("--profile", options.profile, "NAME|FILE.csv", "how it is driven, see below").required();
+  verb.option("--level", options.level, "G", "of eumos40509 and tilt, in g", within(0.01, 2.0));
+  verb.option("--hold", options.hold, "WHAT", "what holds the load beside walls and friction",
+              one_of({"none", "film", "straps"}));
+  verb.option("--draws", options.draws, "N", "of friction, from the scenario's uncertainty, beside its own",
+              whole(0, 1000));
+  verb.option("--seed", options.seed, "N", "of the draws", whole(0));
+  verb.option("--max-shift", options.shift, "MM", "that a box may move, at any time", within(0.1, 10000.0));
+  verb.option("--max-tilt", options.tilt, "DEGREES", "that a box may tip, at any time", within(0.1, 180.0));
+  verb.option("--time-step", options.time_step, "SECONDS",
+              "of the simulation (default: that of the scenario's rehearsals)", within(1e-5, 0.02));
+  add_threads(verb, options.threads);
+  verb.option("--page", options.page, "FILE.html", "write a page with the worst moment");
+  add_json(verb, options.json);
 }
 
 }  // namespace snug::app

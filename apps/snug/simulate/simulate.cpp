@@ -1,10 +1,13 @@
 // simulate: loads what the options name, runs it, prints what became of it.
 #include "apps/snug/simulate/simulate.hpp"
+#include "apps/snug/command_line/ranges.hpp"
+#include "apps/snug/command_line/verbs.hpp"
 
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/version.hpp"
 #include "apps/snug/common/robot_warnings.hpp"
 #include "apps/snug/simulate/repeated_runs.hpp"
@@ -12,7 +15,6 @@
 #include "snug/core/parallel.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/model/scenario.hpp"
-#include "snug/model/spin.hpp"
 #include "snug/motion/program_csv.hpp"
 #include "snug/motion/waypoint.hpp"
 #include "snug/record/csv.hpp"
@@ -51,10 +53,7 @@ std::string list_sequences(const model::Scenario& scenario) {
 
 model::Scenario load_with_overrides(const SimulateOptions& options) {
   model::Scenario scenario = load_changed(options.scenario, options.changes);
-  if (options.dt) scenario.time_step = *options.dt;
-  model::check_spins(scenario);
-  if (options.seed) scenario.seed = *options.seed;
-  if (options.record_period) scenario.record_period = *options.record_period;
+  apply(options.physics, scenario);
   if (options.resume) scenario.initial_state = model::InitialState{*options.resume, options.resume_at};
   if (options.resume_at && !options.resume) {
     throw InputError("command line", "--resume-at", "without --resume", "a recording to go on from");
@@ -81,7 +80,7 @@ runs::RunOptions make_run_options(const SimulateOptions& options, const model::S
     print_robot_warnings(scenario);
   }
   choose_motion(options.motion, run.program_text, options.program.value_or(""), run.simulation);
-  if (options.cup) run.simulation.cup = cup::cup_mode_of(*options.cup, "command line");
+  if (options.physics.cup) run.simulation.cup = cup::cup_mode_of(*options.physics.cup, "command line");
   run.until = options.until;
   run.threads = options.threads.value_or(core_count());
   run.version = version_text();
@@ -102,15 +101,13 @@ int run_repeatedly(const SimulateOptions& options, const model::Scenario& scenar
   if (options.record || options.csv) {
     throw InputError("command line", "--monte-carlo", "with --record or --csv", "one of them, or --draw");
   }
-  const std::vector<RepeatedRun> runs = repeat_runs(options, scenario.seed, *options.monte_carlo, threads);
-  print(options.json ? format_json(runs) : format_table(runs));
-  const auto failed = std::ranges::count_if(runs, [](const RepeatedRun& run) { return !run.failure.empty(); });
+  const std::vector<study::RepeatedRun> runs = repeat_runs(options, scenario.seed, *options.monte_carlo, threads);
+  print(options.json ? study::format_json(runs) : study::format_table(runs));
+  const auto failed = std::ranges::count_if(runs, [](const study::RepeatedRun& run) { return !run.failure.empty(); });
   if (failed == 0) return kSuccess;
   std::fprintf(stderr, "snug: failed: %d of %zu runs did not reach their end\n", static_cast<int>(failed), runs.size());
   return kRunFailed;
 }
-
-}  // namespace
 
 int run_simulate(const SimulateOptions& options) {
   model::Scenario scenario = load_with_overrides(options);
@@ -135,6 +132,58 @@ int run_simulate(const SimulateOptions& options) {
   if (!result.failure) return kSuccess;
   std::fprintf(stderr, "snug: failed: %s\n", result.failure.text.c_str());
   return kRunFailed;
+}
+
+constexpr const char* kSimulateExamples = R"(Examples:
+  snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 -o run.h5
+  snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --corrections seq1 --json
+  snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --monte-carlo 20 --seed 7
+  snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --seed 7 --draw 13 -o worst.h5
+  snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --robot ur10 --csv joints.csv
+  snug pack scenarios/box-demonstrator.yaml --container 400x300x200 --sequence 1 --samples 0 --program small.csv
+  snug simulate scenarios/box-demonstrator.yaml --container 400x300x200 --program small.csv --sequence 1
+  snug simulate scenarios/slide.yaml --until 5 --csv slide.csv)";
+
+}  // namespace
+
+void add_program_options(const Verb& verb, SimulateOptions& options) {
+  add_scenario_changes(verb, options.changes);
+  verb.option("--program", options.program, "FILE.csv", "waypoint file (13 columns) to run; needs --sequence");
+  verb.option("--sequence", options.sequence, "NAME", "item sequence of the scenario that the program packs");
+  add_motion_words(verb, options.motion);
+  verb.option("--robot", options.robot, "NAME",
+              "move the tool with the joints of the scenario's robot, such as ur10; absent: the tool moves by itself");
+  add_corrections(verb, options.corrections);
+}
+
+void add_physics_options(const Verb& verb, SimulateOptions& options) {
+  verb.option("--until", options.until, "SECONDS", "stop at this simulated time; default: the program's end",
+              within(1e-6, 1e6));
+  add_physics(verb, options.physics);
+  verb.option(
+      "--threads", options.threads, "N",
+      "threads of repeated runs or of a scene of many bodies; the result does not depend on it (default: all cores)",
+      whole(1, kMostThreads));
+}
+
+void add_simulate(CLI::App& app, Action& action) {
+  const Verb verb(app, action, "simulate", "run a scenario and say what became of every box", kSimulateExamples);
+  SimulateOptions& options = verb.runs(run_simulate);
+  add_scenario(verb, options.scenario);
+  add_program_options(verb, options);
+  add_physics_options(verb, options);
+  const OptionRow repeated =
+      verb.option("--monte-carlo", options.monte_carlo, "N",
+                  "run the program N times in cells drawn from the scenario's `uncertainty`", whole(1, kMostRuns));
+  verb.option("--draw", options.draw, "N", "the N-th of these runs by itself, such as the worst, to record it",
+              whole(1, kMostRuns))
+      .excludes(repeated);
+  verb.option("-o,--record", options.record, "FILE.h5", "write a recording");
+  verb.option("--resume", options.resume, "FILE.h5",
+              "go on from a recording of the same bodies, from its last frame or --resume-at; not with --program");
+  verb.option("--resume-at", options.resume_at, "SECONDS", "instant of the recording to go on from", positive());
+  verb.option("--csv", options.csv, "FILE.csv", "write one table, a row per recorded instant");
+  add_json(verb, options.json);
 }
 
 }  // namespace snug::app

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "apps/snug/command_line/program_motion.hpp"
 #include "apps/snug/command_line/scenario_options.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/verb.hpp"
 #include "snug/model/scenario.hpp"
 #include "snug/runs/run.hpp"
@@ -20,27 +20,23 @@ struct SimulateOptions {
   std::optional<std::string> program;
   std::optional<std::string> sequence;
   std::optional<double> until;  ///< s
-  std::optional<double> dt;     ///< s
-  std::optional<std::uint64_t> seed;
+  PhysicsWords physics;
   MotionWords motion;
-  std::optional<std::string> robot;     ///< name of the scenario's robot
-  std::optional<std::string> cup;       ///< holding | phases
-  std::string corrections = "none";     ///< none, or the name of a correction layer of the scenario
-  std::optional<std::string> record;    ///< HDF5 file to write
-  std::optional<std::string> csv;       ///< table to write
-  std::optional<double> record_period;  ///< s between frames
-  std::optional<std::string> resume;    ///< recording to go on from
-  std::optional<double> resume_at;      ///< s, instant of it
-  std::optional<int> monte_carlo;       ///< run this many times in cells drawn from the scenario's uncertainty
-  std::optional<int> draw;              ///< the run of this number, from 1, of those
-  std::optional<int> threads;           ///< absent: all cores
+  std::optional<std::string> robot;   ///< name of the scenario's robot
+  std::string corrections = "none";   ///< none, or the name of a correction layer of the scenario
+  std::optional<std::string> record;  ///< HDF5 file to write
+  std::optional<std::string> csv;     ///< table to write
+  std::optional<std::string> resume;  ///< recording to go on from
+  std::optional<double> resume_at;    ///< s, instant of it
+  std::optional<int> monte_carlo;     ///< run this many times in cells drawn from the scenario's uncertainty
+  std::optional<int> draw;            ///< the run of this number, from 1, of those
+  std::optional<int> threads;         ///< absent: all cores
   bool json = false;
 };
 
-void add_simulate(CLI::App& app, Action& action);
 /// What both `simulate` and `view --live` have: the program and the physics.
-void add_program_options(CLI::App& verb, SimulateOptions& options);
-void add_physics_options(CLI::App& verb, SimulateOptions& options);
+void add_program_options(const Verb& verb, SimulateOptions& options);
+void add_physics_options(const Verb& verb, SimulateOptions& options);
 
 /// The scenario that the options name, with what they change in it.
 [[nodiscard]] model::Scenario load_with_overrides(const SimulateOptions& options);
@@ -48,8 +44,5 @@ void add_physics_options(CLI::App& verb, SimulateOptions& options);
 
 /// What both read.
 [[nodiscard]] NamedFiles files_of(const SimulateOptions& options, const model::Scenario& scenario);
-
-/// Prints the result on stdout and returns the exit code. Throws InputError for input that cannot be used.
-[[nodiscard]] int run_simulate(const SimulateOptions& options);
 
 }  // namespace snug::app

@@ -14,6 +14,9 @@
 
 #include "apps/snug/command_line/command_line.hpp"
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/ranges.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
+#include "apps/snug/command_line/verbs.hpp"
 #include "apps/snug/command_line/version.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
@@ -25,6 +28,19 @@ namespace snug::app {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// The words of `snug study`.
+struct StudyOptions {
+  std::string file;
+  std::optional<std::string> dir;  ///< absent: the file's name with the ending .study, in the folder one is in
+  std::optional<int> threads;      ///< absent: all cores
+  std::optional<std::string> chunks;
+  bool slurm = false;
+  bool dry_run = false;
+  bool json = false;
+  std::optional<std::string> output;
+  int worst = 10;
+};
 
 fs::path folder_of(const StudyOptions& options) {
   if (options.dir) return *options.dir;
@@ -84,23 +100,9 @@ std::function<void(std::uint64_t, std::uint64_t)> progress_line() {
   };
 }
 
-}  // namespace
-
-// Rows share the machine: a verb that would take every core for itself gets its part.
-int run_row(const std::vector<std::string>& words, int threads) {
-  std::vector<std::string> all = {"snug"};
-  all.insert(all.end(), words.begin(), words.end());
-  const bool takes_all = words.front() == "pack" || words.front() == "compare" || words.front() == "simulate";
-  if (takes_all && std::ranges::find(words, "--threads") == words.end())
-    all.insert(all.end(), {"--threads", std::to_string(threads)});
-  std::vector<char*> argv;
-  for (std::string& word : all) argv.push_back(word.data());
-  argv.push_back(nullptr);
-  const int code = run_command_line(static_cast<int>(all.size()), argv.data());
-  return flush_stdout() ? code : std::max<int>(code, kRunFailed);
-}
-
 int run_study(const StudyOptions& options) {
+  if (options.file.empty())
+    throw InputError("command line", "study", "no file", "STUDY.yaml, or status, merge or report");
   const study::Study study = study::load_study(options.file);
   study::RunSettings settings;
   settings.version = version_text();
@@ -185,6 +187,63 @@ int run_study_report(const StudyOptions& options) {
   const auto effects = study::find_effects(study, folder, static_cast<std::size_t>(options.worst));
   write_file(std::move(file), study::make_page(study, study::status_of(study, folder), effects));
   return kSuccess;
+}
+
+constexpr const char* kStudyHelp =
+    R"(The file names a verb, its options and factors: options and scenario keys that change from row to row
+(docs/studies.md). Every row is a function of its index. What is done is not done again: the same words after a kill go on.
+Examples:
+  snug study scenarios/examples/friction.yaml           # run what is missing, on all cores
+  snug study scenarios/examples/friction.yaml --slurm   # write and submit an array of jobs
+  snug study status scenarios/examples/friction.yaml
+  snug study merge scenarios/examples/friction.yaml -o friction.csv
+  snug study report scenarios/examples/friction.yaml -o friction.html)";
+
+}  // namespace
+
+// Rows share the machine: a verb that would take every core for itself gets its part.
+int run_row(const std::vector<std::string>& words, int threads) {
+  std::vector<std::string> all = {"snug"};
+  all.insert(all.end(), words.begin(), words.end());
+  const bool takes_all = words.front() == "pack" || words.front() == "compare" || words.front() == "simulate";
+  if (takes_all && std::ranges::find(words, "--threads") == words.end())
+    all.insert(all.end(), {"--threads", std::to_string(threads)});
+  std::vector<char*> argv;
+  for (std::string& word : all) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const int code = run_command_line(static_cast<int>(all.size()), argv.data());
+  return flush_stdout() ? code : std::max<int>(code, kRunFailed);
+}
+
+void add_study(CLI::App& app, Action& action) {
+  const Verb verb(app, action, "study", "many runs over a design of scenario keys and options, here or on a cluster",
+                  kStudyHelp);
+  const auto add_file = [](const Verb& to, StudyOptions& options, bool is_required) {
+    to.option("study", options.file, "STUDY.yaml", "file of the study").required(is_required);
+    to.option("--dir", options.dir, "DIR", "folder of its tables (default: STUDY.study)");
+  };
+  StudyOptions& options = verb.runs(run_study);
+  add_file(verb, options, false);
+  verb.option("--threads", options.threads, "N",
+              "rows at a time; the result does not depend on it (default: all cores)", whole(1, kMostThreads));
+  verb.option("--chunks", options.chunks, "A-B", "only these tables, from 0; jobs of an array have theirs");
+  const OptionRow slurm =
+      verb.flag("--slurm", options.slurm, "write an array of jobs for what is missing and submit it");
+  verb.flag("--dry-run", options.dry_run, "with --slurm: write it, but do not submit it").needs(slurm);
+  add_json(verb, options.json);
+  const Verb status = verb.part("status", "how much of a study is done", "", true);
+  StudyOptions& of_status = status.runs(run_study_status);
+  add_file(status, of_status, true);
+  add_json(status, of_status.json);
+  const Verb merge = verb.part("merge", "all rows that are done as one table, in the order of their indices", "", true);
+  StudyOptions& of_merge = merge.runs(run_study_merge);
+  add_file(merge, of_merge, true);
+  merge.option("-o,--output", of_merge.output, "FILE.csv|FILE.h5", "table, CSV or HDF5 by its ending").required();
+  const Verb report = verb.part("report", "a page: main effects, interactions, quantiles, worst rows", "", true);
+  StudyOptions& of_report = report.runs(run_study_report);
+  add_file(report, of_report, true);
+  report.option("-o,--output", of_report.output, "FILE.html", "page").required();
+  report.option("--worst", of_report.worst, "N", "rows listed as worst, of each number", whole(0, 1000));
 }
 
 }  // namespace snug::app

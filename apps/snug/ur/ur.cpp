@@ -1,22 +1,36 @@
 // ur: what a UR controller says of itself, and whether it fits a scenario's robot. Nothing is moved.
-#include "apps/snug/ur/ur.hpp"
+#include "apps/snug/command_line/verbs.hpp"
 
 #include <fmt/format.h>
 #include <fmt/printf.h>
-
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "apps/snug/command_line/ranges.hpp"
+#include "apps/snug/command_line/scenario_options.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/shipped.hpp"
+#include "apps/snug/command_line/verb.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/model/robot_io.hpp"
 #include "snug/remote_ur/compare_robot.hpp"
 
 namespace snug::app {
 namespace {
+
+struct UrCheckOptions {
+  std::string host;
+  std::string scenario = "scenarios/box-demonstrator.yaml";
+  ScenarioChanges changes;
+  int port_offset = 0;
+  double patience = 5.0;
+  double tolerance_mm = 1.0;
+  bool json = false;
+};
 
 using Json = nlohmann::ordered_json;
 using remote_ur::Finding;
@@ -93,8 +107,6 @@ Json json_of(const remote_ur::RobotReport& robot, const std::vector<Finding>& fi
   return json;
 }
 
-}  // namespace
-
 int run_ur_check(const UrCheckOptions& options) {
   const std::string file = find_shipped(options.scenario);
   const model::Scenario scenario = load_changed(file, options.changes);
@@ -112,6 +124,31 @@ int run_ur_check(const UrCheckOptions& options) {
     print_text(robot, findings, model::robot_io(scenario));
   }
   return fits ? kSuccess : kRunFailed;
+}
+
+constexpr const char* kUrCheckHelp =
+    R"(Reads the primary port, RTDE and the dashboard; moves nothing and switches nothing. Exit code 0: it fits; 1: something
+does not, with what to set; 2: nobody answers there, or the input cannot be used.
+Example:
+  snug serve scenarios/box-demonstrator.yaml --ur 127.0.0.1     # a simulated one, in another terminal
+  snug ur check 127.0.0.1 --scenario scenarios/box-demonstrator.yaml)";
+
+}  // namespace
+
+void add_ur(CLI::App& app, Action& action) {
+  const Verb verb(app, action, "ur", "ask a robot of Universal Robots",
+                  "`snug ur check --help` says what is read. Example:\n  snug ur check --help");
+  const Verb part = verb.part("check", "what of a UR does not fit the scenario's robot, and what to set", kUrCheckHelp);
+  UrCheckOptions& options = part.runs(run_ur_check);
+  part.option("host", options.host, "HOST", "IPv4 address or name of the controller").required();
+  part.option("--scenario", options.scenario, "SCENARIO.yaml", "whose robot it is to be");
+  add_scenario_changes(part, options.changes);
+  part.option("--ur-port-offset", options.port_offset, "N", "added to each port, as that of `snug serve --ur`",
+              whole(0, 35531));
+  part.option("--tolerance", options.tolerance_mm, "MM",
+              "how far the tool's end may be off by the controller's kinematics, and the TCP", positive());
+  part.option("--timeout", options.patience, "SECONDS", "how long to wait for an answer", within(0.01, 1e5));
+  add_json(part, options.json);
 }
 
 }  // namespace snug::app

@@ -1,19 +1,31 @@
 // validate: a simulation beside the measurements of its experiment.
-#include "apps/snug/validate/validate.hpp"
+#include "apps/snug/command_line/verbs.hpp"
 
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
+#include "apps/snug/command_line/verb.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/validation/page.hpp"
 
 namespace snug::app {
 namespace {
+
+struct ValidateOptions {
+  std::string simulated, measured;
+  std::optional<std::string> page, svg, csv, windows;
+  std::vector<std::string> shifts;  ///< "SOURCE=SECONDS"
+  bool json = false;
+};
 
 validation::HandShifts parse_shifts(const std::vector<std::string>& words) {
   validation::HandShifts shifts;
@@ -47,8 +59,6 @@ void write_figures(const std::string& folder, const std::vector<validation::Name
     write_file(std::filesystem::path(folder) / figure.file, report::draw_svg(figure.figure));
 }
 
-}  // namespace
-
 int run_validate(const ValidateOptions& options) {
   NamedFiles inputs = {{"--simulated", options.simulated}, {"--measured", options.measured}}, outputs;
   add_file(inputs, "--windows", options.windows);
@@ -71,6 +81,37 @@ int run_validate(const ValidateOptions& options) {
   if (page) write_file(std::move(*page), validation::make_page(run, result));
   print(options.json ? validation::as_json(result) : validation::as_text(result));
   return kSuccess;
+}
+
+constexpr const char* kValidateHelp =
+    R"(The four criteria of the report's section 4.4.1: execution, rest poses (its Table 4), poses over the motion (Table 5),
+wrenches (Table 6), and the key moments of Table 3; repetitions together. Each in two forms: clean (geodesic angle, nothing
+dropped, lost markers counted) and report (the demonstrator's rules). Clocks are found by cross-correlation over all bodies.
+Examples:
+  snug validate --simulated run.h5 --measured measured.h5 -o validation.html
+  snug validate --simulated run.h5 --measured measured.h5 --svg figures --csv errors.csv --json
+  snug export run.h5 --format csv -o log.csv
+  snug validate --simulated run.h5 --measured log.csv --shift mocap=0.35 --windows scenarios/sensors/report-windows.csv)";
+
+}  // namespace
+
+void add_validate(CLI::App& app, Action& action) {
+  const Verb verb(app, action, "validate", "how far a simulation is from the measurements of its experiment",
+                  kValidateHelp);
+  ValidateOptions& options = verb.runs(run_validate);
+  verb.option("--simulated", options.simulated, "RECORDING.h5", "recording of the run").required();
+  verb.option("--measured", options.measured, "ARCHIVE.h5|LOG.csv",
+              "archive with the repetitions, or one log with names of mc_rtc")
+      .required();
+  verb.option("-o,--output", options.page, "FILE.html", "a page with all tables and the figures of the key moments");
+  verb.option("--svg", options.svg, "FOLDER",
+              "folder for the figures of all boxes, poses and wrenches (made if needed)");
+  verb.option("--csv", options.csv, "FILE.csv", "a row for each box, repetition and form");
+  verb.option("--windows", options.windows, "FILE.csv",
+              "spans to compare, instead of those found: body,start_s,end_s[,sequence]");
+  verb.option("--shift", options.shifts, "SOURCE=SECONDS",
+              "what a source's clock (mocap, ft, robot) shows at time 0 of the simulation, instead of finding it");
+  add_json(verb, options.json);
 }
 
 }  // namespace snug::app

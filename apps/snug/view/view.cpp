@@ -1,5 +1,7 @@
 // view: the page of the report, served on this machine: for recordings, or for a simulation that goes on.
 #include "apps/snug/view/view.hpp"
+#include "apps/snug/command_line/ranges.hpp"
+#include "apps/snug/command_line/verbs.hpp"
 
 #include <spawn.h>
 #include <sys/wait.h>
@@ -11,10 +13,10 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/stop_signal.hpp"
 #include "apps/snug/command_line/viewer_page.hpp"
-#include "apps/snug/common/robot_files.hpp"
-#include "apps/snug/view/view_served.hpp"
+#include "apps/snug/common/recordings.hpp"
 #include "snug/runs/result_json.hpp"
 #include "snug/runs/run_table.hpp"
 
@@ -36,15 +38,10 @@ void open_browser(const std::string& address) {
 int view_recordings(const ViewOptions& options) {
   serve::Content content;
   content.page = viewer_page();
-  for (const std::string& path : options.recordings) {
-    record::RecordingReader reader(path);
-    const std::string name = std::filesystem::path(path).filename().string();
-    const replay::RobotDescription robot = find_robot(reader, path, options.urdf);
-    content.recordings.push_back({name, replay::encode_recording(reader, name, options.selection, robot)});
-  }
+  content.recordings = encode_recordings(options.recordings, options.selection, options.urdf);
   serve::Server server(options.server, std::move(content));
   const StopSignal signal([&] { server.stop(); });
-  announce(server.address(), options.opens_browser);
+  announce(server.address(), !options.is_quiet);
   server.run();
   return kSuccess;
 }
@@ -117,7 +114,7 @@ int view_live(const ViewOptions& options) {
   });
   simulation.start([&] { server.stop(); });
   while (!live.wait_for(0, std::chrono::milliseconds(200)) && !live.is_over()) continue;  // bad input shows here
-  if (!live.is_over() || live.whole_form()) announce(server.address(), options.opens_browser);
+  if (!live.is_over() || live.whole_form()) announce(server.address(), !options.is_quiet);
   server.run();
   const runs::RunResult& result = simulation.result();
   print(format_table(result));
@@ -126,6 +123,44 @@ int view_live(const ViewOptions& options) {
   return kRunFailed;
 }
 
+void check_view_words(const ViewOptions& options) {
+  const bool is_live = !options.run.scenario.empty();
+  if (is_live != options.recordings.empty() || options.recordings.size() > 2) {
+    throw InputError("command line", "view", is_live ? "a recording and --live" : "",
+                     "one or two recordings, or --live");
+  }
+  if (!is_live && (options.run.program || options.run.sequence || options.run.record || options.run.changes.any())) {
+    throw InputError("command line", "--program, --sequence, --items, --container, --pallet, -o", "with a recording",
+                     "--live SCENARIO.yaml");
+  }
+  if (options.click && (!is_live || options.run.program || options.run.record || options.is_paused)) {
+    throw InputError("command line", "--click", is_live ? "with --program, -o or --paused" : "without --live",
+                     "--live SCENARIO.yaml, and a recording by the server (snug serve -o)");
+  }
+  if (!(options.speed >= 0.0 && options.speed <= 1e6)) {
+    throw InputError("command line", "--speed", std::to_string(options.speed), "0 to 1000000");
+  }
+  if (options.server.port < 0 || options.server.port > 65535) {
+    throw InputError("command line", "--port", std::to_string(options.server.port), "0 to 65535");
+  }
+}
+
+int run_view(const ViewOptions& options) {
+  check_view_words(options);
+  if (options.run.scenario.empty()) return view_recordings(options);
+  return options.click ? view_served(options) : view_live(options);
+}
+
+constexpr const char* kViewExamples = R"(Examples:
+  snug view run.h5
+  snug view run.h5 again.h5                          # the second is laid over the first
+  snug view --live scenarios/drop.yaml --speed 0.2 --paused
+  snug view --live scenarios/box-demonstrator.yaml --program program.csv --sequence 1 -o run.h5
+  snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555
+  snug view --live scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555      # in another terminal: looks on
+Ctrl-C ends it. The page is served to this machine only, unless --host names another of its addresses.
+Who opens that has to know the whole address that is printed, with its token.)";
+
 }  // namespace
 
 void announce(const std::string& address, bool opens_browser) {
@@ -133,9 +168,28 @@ void announce(const std::string& address, bool opens_browser) {
   if (opens_browser) open_browser(address);
 }
 
-int run_view(const ViewOptions& options) {
-  if (options.run.scenario.empty()) return view_recordings(options);
-  return options.click ? view_served(options) : view_live(options);
+void add_view(CLI::App& app, Action& action) {
+  const Verb verb(app, action, "view", "show a recording, or a simulation that goes on, in the browser", kViewExamples);
+  ViewOptions& options = verb.runs(run_view);
+  verb.option("recordings", options.recordings, "FILE.h5", "a recording, and another one to lay over it");
+  verb.option("--live", options.run.scenario, "SCENARIO.yaml", "run this scenario and show it while it runs");
+  verb.option("--click", options.click, "ADDRESS",
+              "with --live: show the cell that `snug serve SCENARIO.yaml --click ADDRESS` serves, while others drive "
+              "it; with --sequence if there");
+  add_client(verb, options.client, "--click-timeout");
+  add_program_options(verb, options.run);
+  add_physics_options(verb, options.run);
+  verb.option("-o,--record", options.run.record, "FILE.h5", "write a recording of the live run");
+  verb.option("--speed", options.speed, "FACTOR", "of the live run, simulated seconds a second; 0 as fast as it goes");
+  verb.flag("--paused", options.is_paused, "start the live run paused");
+  verb.option("--host", options.server.host, "ADDRESS",
+              "address to serve at; if it is not loopback, who has the printed address with its token can look in");
+  verb.option("--name", options.server.names, "NAME",
+              "a name by which browsers ask for it, besides this machine's own: behind a proxy, in a container");
+  verb.option("--port", options.server.port, "N", "port to serve at; 0 any that is free");
+  verb.flag("--no-open", options.is_quiet, "open no browser, only say the address");
+  add_selection(verb, options.selection);
+  add_urdf(verb, options.urdf);
 }
 
 }  // namespace snug::app

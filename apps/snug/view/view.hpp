@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/verb.hpp"
 #include "apps/snug/simulate/simulate.hpp"
 #include "snug/replay/replay.hpp"
@@ -15,20 +16,18 @@ struct ViewOptions {
   std::vector<std::string> recordings;  ///< one, or one and a second to lay over it; none with a run
   SimulateOptions run;                  ///< shown while it goes on, if it has a scenario
   std::optional<std::string> click;     ///< address at which the live run is served: it is looked at, not simulated
-  std::optional<std::string> keys;      ///< folder or file: by which this program is known there
-  double patience = 10.0;               ///< s, for an answer from there
-  double speed = 1.0;                   ///< of the run, simulated seconds a second; 0: as fast as it goes
-  bool is_paused = false;               ///< before its first step
-  bool opens_browser = true;
+  ClientWords client;
+  double speed = 1.0;      ///< of the run, simulated seconds a second; 0: as fast as it goes
+  bool is_paused = false;  ///< before its first step
+  bool is_quiet = false;   ///< opens no browser
   serve::ServerSettings server;
   replay::Selection selection;
   std::optional<std::string> urdf;  ///< of the robot in a recording; absent: looked for
 };
 
-void add_view(CLI::App& app, Action& action);
 /// Says on stderr where the page is, and opens it.
 void announce(const std::string& address, bool opens_browser);
-/// Serves until the program is told to stop (Ctrl-C).
-[[nodiscard]] int run_view(const ViewOptions& options);
+/// Serves a cell of another program while it is driven, until this one is told to stop (Ctrl-C).
+[[nodiscard]] int view_served(const ViewOptions& options);
 
 }  // namespace snug::app

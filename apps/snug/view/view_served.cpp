@@ -1,5 +1,5 @@
 // view --live --click: a cell that another program serves, in the browser while it is driven.
-#include "apps/snug/view/view_served.hpp"
+#include "apps/snug/view/view.hpp"
 
 #include <atomic>
 #include <cstdio>
@@ -17,9 +17,9 @@
 namespace snug::app {
 namespace {
 
-constexpr std::chrono::milliseconds kBetweenLooks(8);  // at most 125 answers a second are the watcher's
+constexpr std::chrono::milliseconds kBetweenObservations(8);  // at most 125 answers a second are the watcher's
 
-/// Looks at the cell until told to stop; each run, from time 0 to the next reset, is one of `live`.
+/// Observes the cell until told to stop; each run, from time 0 to the next reset, is one of `live`.
 class Watch {
  public:
   Watch(remote_plant::WatchedCell& cell, serve::LiveRun& live) : cell_(cell), live_(live) {}
@@ -31,7 +31,7 @@ class Watch {
     begin();
     std::string trouble;
     while (!is_stopped_ && trouble.empty()) {
-      std::this_thread::sleep_for(kBetweenLooks);
+      std::this_thread::sleep_for(kBetweenObservations);
       trouble = cell_.look();
       if (trouble.empty()) show();
     }
@@ -86,7 +86,7 @@ int view_served(const ViewOptions& options) {
   const model::Scenario scenario = load_with_overrides(options.run);
   if (scenario.sequences.empty()) throw InputError(scenario.source_name, "sequences", "", "a sequence of boxes");
   remote_plant::WatchedCell cell(scenario, options.run.sequence.value_or(scenario.sequences.front().name),
-                                 *options.click, options.patience, click::find_client_keys(options.keys));
+                                 *options.click, options.client.patience, click::find_client_keys(options.client.keys));
   serve::LiveRun live(std::filesystem::path(options.run.scenario).stem().string(), 0.0);
   serve::Server server(options.server, {std::string(viewer_page()), {}, &live, true});
   Watch watch(cell, live);
@@ -101,7 +101,7 @@ int view_served(const ViewOptions& options) {
     if (!trouble.empty())
       std::fprintf(stderr, "snug: the cell is seen no more: %s\n", printable(trouble, kLongestMessage).c_str());
   });
-  announce(server.address(), options.opens_browser);
+  announce(server.address(), !options.is_quiet);
   server.run();
   looking.join();
   return trouble.empty() ? kSuccess : kRunFailed;
