@@ -63,6 +63,17 @@ class Shell(unittest.TestCase):
                 for option in options:
                     self.assertIn(f"-l {option}" if name == "fish" else f"--{option}", text, (name, words))
 
+    def test_an_option_that_verbs_share_says_the_same_in_each(self):
+        said = {"--json": {}, "--set": {}}
+        for words in verbs():
+            if words[0] in ("items", "compare"):
+                continue  # of lists of results
+            for option, about in re.findall(r"^  (--json|--set)\b.*?  +(\S.*)$", run(SNUG, *words, "--help").stdout, re.MULTILINE):
+                said[option].setdefault(about, []).append(words)
+        for option, texts in said.items():
+            self.assertEqual(len(texts), 1, (option, texts))
+            self.assertGreater(len(next(iter(texts.values()))), 5, option)
+
     def test_each_script_is_read_by_its_shell(self):
         for shell in ("bash", "zsh", "fish"):
             with self.subTest(shell=shell):

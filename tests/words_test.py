@@ -17,11 +17,28 @@ REPLACED = {
 }
 
 
+# Names that code had, as whole words of identifiers; words that may mean something else there are left to readers.
+REPLACED_NAMES = {
+    "faithful": "lagged", "happening": "event, or what it is", "heed": "observe", "heeds": "observe", "who_sticks_out": "find_...",
+    "k_in_the_air": "held", "journey": "item events", "hopeless": "infeasible", "dislike": "cost",
+}
+NAMES = re.compile(r"(?<![a-z0-9])(" + "|".join(sorted(REPLACED_NAMES, key=len, reverse=True)) + r")(?![a-z0-9])")
+# What reads old programs knows the old words.
+KNOWS_OLD_WORDS = {"src/snug/motion/test/program_tracking_test.cpp"}
+
+
 def texts():
-    """Documents and the files that declare options; decision records are not edited."""
-    for path in sorted([*(ROOT / "docs").rglob("*.md"), *(ROOT / "src").rglob("README.md"), *(ROOT / "apps").rglob("*_options.cpp")]):
+    """Documents and the sources of the program, which hold its help; decision records are not edited."""
+    for path in sorted([*(ROOT / "docs").rglob("*.md"), *(ROOT / "src").rglob("README.md"), *(ROOT / "apps").rglob("*.[ch]pp")]):
         if "decisions" not in path.parts:
             yield path
+
+
+def sources():
+    for folder in ("src", "apps", "python"):
+        for path in sorted((ROOT / folder).rglob("*.[ch]pp")):
+            if str(path.relative_to(ROOT)) not in KNOWS_OLD_WORDS:
+                yield path
 
 
 def find_words(text):
@@ -32,12 +49,31 @@ def find_words(text):
                 yield number, word
 
 
+def find_names(text):
+    """(line number, name) of each identifier with a replaced name in it: SomeName, kSomeName, some_name, someName_."""
+    for number, line in enumerate(text.splitlines(), 1):
+        snake = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", line).lower()
+        for match in NAMES.finditer(snake):
+            yield number, match.group(1)
+
+
 class Words(unittest.TestCase):
     def test_replaced_words_stay_out_of_documents_and_help(self):
         found = [f"{path.relative_to(ROOT)}:{number}: '{word}', say '{REPLACED[word]}'"
                  for path in texts() for number, word in find_words(path.read_text(encoding="utf-8"))]
         self.assertGreater(len(list(texts())), 50)
         self.assertEqual(found, [])
+
+    def test_replaced_names_stay_out_of_code(self):
+        found = [f"{path.relative_to(ROOT)}:{number}: '{name}', say '{REPLACED_NAMES[name]}'"
+                 for path in sources() for number, name in find_names(path.read_text(encoding="utf-8"))]
+        self.assertGreater(len(list(sources())), 500)
+        self.assertEqual(found, [])
+
+    def test_a_replaced_name_would_be_found(self):
+        for line in ("class Happening {", "who_sticks_out(load);", "constexpr double kInTheAir = 1;", "HeedsWhatElse", "// who heed each other"):
+            self.assertEqual(len(list(find_names(line))), 1, line)
+        self.assertEqual(list(find_names("unheeded settings.in_the_air")), [])
 
     def test_a_replaced_word_would_be_found(self):
         self.assertEqual(list(find_words("fine\n--controller Faithful\nunfaithfully\n")), [(2, "faithful")])
