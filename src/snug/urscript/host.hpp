@@ -61,6 +61,7 @@ struct ControllerState {
   Payload payload;
   Vector3 gravity_Base{0.0, 0.0, 9.82};  ///< m/s^2, as set_gravity has it: upwards
   int tool_voltage = 0;                  ///< V: 0, 12 or 24
+  bool wants_protective_stop = false;    ///< set by protective_stop; the host ends the program and clears it
 
   /// Where the arm is to be at the end of this period; equal to where it is told to stand when nothing moves it.
   JointTarget target;

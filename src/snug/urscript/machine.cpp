@@ -34,6 +34,7 @@ void Machine::Impl::run_threads(Host& host) {
         }
         const std::size_t before = static_cast<std::size_t>(threads[i].frames.back().next) - 1;
         threads[i].wait = nullptr;
+        if (threads[i].is_critical) critical = id;
         if (code().instructions[before].op == Op::CallBuiltin) push(threads[i], std::move(result));
       }
       status.line = at(threads[i]).line;
@@ -45,6 +46,8 @@ void Machine::Impl::run_threads(Host& host) {
           where = &at(threads[i]);
           runs = run_one(threads[i], host);
         }
+        // Who waits lets the others run, also in a critical section.
+        if (threads[i].wait && critical == threads[i].id) critical = -1;
         goes_on = goes_on || threads.size() > count;
       } catch (Fault& fault) {
         status.error = {where->line, where->column, std::move(fault.text)};

@@ -145,10 +145,12 @@ bool Machine::Impl::run_flow(Thread& thread, const Instruction& instruction, Hos
       return !thread.is_done;
     }
     case Op::EnterCritical:
+      thread.is_critical = true;
       critical = thread.id;
       break;
     case Op::ExitCritical:
-      critical = -1;
+      thread.is_critical = false;
+      if (critical == thread.id) critical = -1;
       break;
     case Op::SkipIfGiven:
       if (frame.given[a]) frame.next = instruction.b;

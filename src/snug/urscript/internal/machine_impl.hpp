@@ -34,6 +34,7 @@ struct Thread {
   std::vector<Frame> frames;
   std::vector<Value> stack;
   std::function<bool(CallContext&, Value&)> wait;
+  bool is_critical = false;  ///< between enter_critical and exit_critical
   bool is_done = false;
 };
 
@@ -182,7 +183,7 @@ struct Machine::Impl {
   double time = 0.0;
   double pace = 1.0;  ///< of a motion, 0: paused
   int next_thread = 0;
-  int critical = -1;  ///< the thread that runs alone
+  int critical = -1;  ///< the thread that runs alone, until it waits
   bool is_paused = false;
   bool is_braking = false;
 };

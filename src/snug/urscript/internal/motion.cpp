@@ -12,6 +12,7 @@ namespace {
 constexpr double kLongestMove = 120.0;  // s
 constexpr double kSmall = 1e-9;         // m or rad: no way
 constexpr double kForceGain = 4e-4;     // m/s for each newton that is missing
+constexpr double kTorqueGain = 0.02;    // rad/s for each newton metre that is missing
 constexpr double kReturnSpeed = 0.1;    // of what a joint may do
 constexpr double kTolerance = 1e-6;     // rad, and share of a speed
 constexpr double kLeastServo = 0.5;     // of a period: the rest of a servo time that gets a period of its own
@@ -251,6 +252,7 @@ void Motion::return_to_path(Host& host) {
 void Motion::end_force(const Host& host) {
   force_.reset();
   pushed_.setZero();
+  turned_.setIdentity();
   if (is_still()) end_ = host.state().target.q;
 }
 
@@ -280,16 +282,23 @@ Joints Motion::path_now() const {
 /// The tool gives way in the directions of force_mode, so that it pushes with the force that is asked for.
 void Motion::push(const Host& host, Joints& q) {
   const ControllerState& state = host.state();
-  const Vector3 felt = force_->X_BaseT.R.transpose() * state.F_Eo_Base.force;
-  Vector3 step = Vector3::Zero();
+  const Matrix3& R_BaseT = force_->X_BaseT.R;
+  const Vector3 felt = R_BaseT.transpose() * state.F_Eo_Base.force;
+  const Vector3 felt_about = R_BaseT.transpose() * state.F_Eo_Base.torque;
+  Vector3 step = Vector3::Zero(), turn = Vector3::Zero();
   for (int i = 0; i < 3; ++i) {
-    if (!force_->is_compliant[static_cast<std::size_t>(i)]) continue;
-    step[i] = std::clamp(kForceGain * (force_->force[i] + felt[i]), -force_->speed[i], force_->speed[i]);
+    const double most = force_->speed[i], most_about = force_->angular_speed[i];
+    if (force_->is_compliant[static_cast<std::size_t>(i)])
+      step[i] = std::clamp(kForceGain * (force_->force[i] + felt[i]), -most, most);
+    if (force_->is_compliant_about[static_cast<std::size_t>(i)])
+      turn[i] = std::clamp(kTorqueGain * (force_->torque[i] + felt_about[i]), -most_about, most_about);
   }
-  pushed_ += force_->X_BaseT.R * step * host.period();
-  Pose flange = host.forward(q);
-  flange.p += pushed_;
-  if (const std::optional<Joints> found = host.inverse(flange, written_)) q = *found;
+  pushed_ += R_BaseT * step * host.period();
+  turned_ = exp_rotation(R_BaseT * turn * host.period()) * turned_;
+  Pose tool = host.forward(q) * state.X_FE;
+  tool.p += pushed_;
+  tool.R = turned_ * tool.R;
+  if (const std::optional<Joints> found = host.inverse(tool * state.X_FE.inverse(), written_)) q = *found;
 }
 
 void Motion::step(Host& host, double share) {

@@ -19,12 +19,15 @@ struct MoveSettings {
   double blend = 0.0;     ///< m
 };
 
-/// Pushes of force_mode: in these directions of the frame the tool moves until the force is met.
+/// Pushes of force_mode: in these directions of the frame the tool moves and turns until force and torque are met.
 struct ForceMode {
   Pose X_BaseT;
-  std::array<bool, 3> is_compliant{};
-  Vector3 force = Vector3::Zero();  ///< N, of the tool on its surroundings, in the axes of T
-  Vector3 speed = Vector3::Zero();  ///< m/s, at most
+  std::array<bool, 3> is_compliant{};        ///< along the axes of T
+  std::array<bool, 3> is_compliant_about{};  ///< about the axes of T, through the TCP
+  Vector3 force = Vector3::Zero();           ///< N, of the tool on its surroundings, in the axes of T
+  Vector3 torque = Vector3::Zero();          ///< Nm, of the same, about the TCP
+  Vector3 speed = Vector3::Zero();           ///< m/s, at most
+  Vector3 angular_speed = Vector3::Zero();   ///< rad/s, at most
 };
 
 /// Moves are paths of joints, sampled each period, that end at rest. A move that begins while another one still goes to
@@ -85,7 +88,8 @@ class Motion {
   Joints written_{};  ///< the last target
   bool has_written_ = false;
   std::optional<ForceMode> force_;
-  Vector3 pushed_ = Vector3::Zero();  ///< m, in Base
+  Vector3 pushed_ = Vector3::Zero();      ///< m, in Base
+  Matrix3 turned_ = Matrix3::Identity();  ///< about the TCP, in Base
 };
 
 }  // namespace snug::urscript::internal

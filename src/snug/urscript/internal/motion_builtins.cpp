@@ -121,10 +121,13 @@ Value force_mode(CallContext& call) {
   if (type != 1.0 && type != 2.0 && type != 3.0) throw Fault{"a type that is not 1, 2 or 3"};
   if (type == 1.0) throw Fault{"force_mode of type 1, a frame that turns to the TCP, is not there"};
   for (std::size_t i = 0; i < 3; ++i) {
-    if (chosen[i + 3] != 0.0) throw Fault{"force_mode about axes is not there, only along them"};
+    const auto axis = static_cast<Eigen::Index>(i);
     mode.is_compliant[i] = chosen[i] != 0.0;
-    mode.force[static_cast<Eigen::Index>(i)] = wrench[i];
-    mode.speed[static_cast<Eigen::Index>(i)] = std::clamp(std::abs(limits[i]), 0.0, 0.25);
+    mode.is_compliant_about[i] = chosen[i + 3] != 0.0;
+    mode.force[axis] = wrench[i];
+    mode.torque[axis] = wrench[i + 3];
+    mode.speed[axis] = std::clamp(std::abs(limits[i]), 0.0, 0.25);
+    mode.angular_speed[axis] = std::clamp(std::abs(limits[i + 3]), 0.0, 0.5);
   }
   call.motion.start_force(mode);
   return Value::of(true);

@@ -53,6 +53,7 @@ Value not_there(CallContext&) {
 
 const Builtin kRobot[] = {
     {"get_actual_joint_positions", "", 0, [](CallContext& c) { return Value::list(c.host.state().q); }},
+    {"get_joint_positions", "", 0, [](CallContext& c) { return Value::list(c.host.state().q); }},  // its former name
     {"get_actual_joint_positions_history", "steps", 0, [](CallContext& c) { return Value::list(c.host.state().q); }},
     {"get_actual_joint_speeds", "", 0, [](CallContext& c) { return Value::list(c.host.state().qd); }},
     {"get_target_joint_positions", "", 0, [](CallContext& c) { return Value::list(c.host.state().target.q); }},
@@ -136,13 +137,18 @@ const Builtin kRobot[] = {
        c.host.state().tool_voltage = static_cast<int>(voltage);
        return Value{};
      }},
-    {"teach_mode", "", 0, not_there},
+    // Nobody takes the simulated arm by the hand: it stands.
+    {"teach_mode", "", 0, no_effect},
     {"end_teach_mode", "", 0, no_effect},
-    {"freedrive_mode", "freeAxes feature", 0, not_there},
+    {"freedrive_mode", "freeAxes feature", 0, no_effect},
     {"end_freedrive_mode", "", 0, no_effect},
     {"direct_torque", "torque friction_comp", 1, not_there},
     {"get_joint_torques", "", 0, not_there},
-    {"protective_stop", "", 0, [](CallContext&) -> Value { throw Fault{"the program asked for a protective stop"}; }},
+    {"protective_stop", "", 0,
+     [](CallContext& c) {
+       c.host.state().wants_protective_stop = true;
+       return Value{};
+     }},
     // The simulated sensor needs none of these.
     {"zero_ftsensor", "", 0, no_effect},
     {"force_mode_set_damping", "damping", 1, no_effect},

@@ -103,6 +103,69 @@ TEST(UrScriptMachine, ThreadsRunSideBySide) {
   EXPECT_NEAR(std::stod(host.messages[1]), 0.1 / 0.008, 1.5);
 }
 
+TEST(UrScriptMachine, WhoWaitsInACriticalSectionLetsOthersRun) {
+  FakeHost host;
+  Machine machine = machine_of(R"(  global beats = 0
+  thread beat():
+    while True:
+      enter_critical
+      beats = beats + 1
+      servoj([0.001 * beats, 0, 0, 0, 0, 0], t=0.008)
+      exit_critical
+    end
+  end
+  run beat()
+  socket_open("127.0.0.1", 50001)
+  n = 0
+  while n < 50:
+    enter_critical
+    params = socket_read_binary_integer(1, timeout=0.008)
+    n = n + 1
+    exit_critical
+  end
+  textmsg(beats))");
+  EXPECT_EQ(host.run(machine).state, MachineState::Ended) << machine.status().error.text;
+  ASSERT_EQ(host.messages.size(), 1U);
+  EXPECT_GT(std::stod(host.messages[0]), 40.0);
+  EXPECT_GT(host.way.back()[0], 0.03);
+}
+
+TEST(UrScriptMachine, ACriticalSectionThatDoesNotWaitIsNotInterrupted) {
+  FakeHost host;
+  MachineLimits limits;
+  limits.instructions_per_step = 50;
+  Machine machine(*parse(R"(def p():
+  global seen = 0
+  global inside = False
+  thread look():
+    while True:
+      if inside:
+        seen = seen + 1
+      end
+    end
+  end
+  run look()
+  n = 0
+  while n < 20:
+    enter_critical
+    inside = True
+    k = 0
+    while k < 100:
+      k = k + 1
+    end
+    inside = False
+    exit_critical
+    n = n + 1
+  end
+  textmsg(seen)
+end
+)"),
+                  limits);
+  EXPECT_EQ(host.run(machine).state, MachineState::Ended) << machine.status().error.text;
+  ASSERT_EQ(host.messages.size(), 1U);
+  EXPECT_EQ(host.messages[0], "0");
+}
+
 TEST(UrScriptMachine, MovesTakeTheTimeOfATrapezoidWithinTheirSpeed) {
   FakeHost host;
   Machine machine = machine_of("  movej([1, 0.5, 0, 0, 0, 0], a=2, v=0.5)");
@@ -112,6 +175,39 @@ TEST(UrScriptMachine, MovesTakeTheTimeOfATrapezoidWithinTheirSpeed) {
   EXPECT_NEAR(static_cast<double>(host.way.size()) * 0.008, 1.0 / 0.5 + 0.5 / 2.0, 0.025);
   EXPECT_LE(host.fastest, 0.5 + 1e-9);
   EXPECT_LE(host.jump, 2.0 + 1e-6);
+}
+
+TEST(UrScriptMachine, ForceModeMovesAndTurnsUntilForceAndTorqueAreMet) {
+  FakeHost host;
+  host.state_.F_Eo_Base = {Vector3(0, 0, 20), Vector3(0, 0, 1)};  // of the surroundings on the tool
+  Machine machine = machine_of(
+      "  force_mode(p[0, 0, 0, 0, 0, 0], [0, 0, 1, 0, 0, 1], [5, 0, -50, 0, 0, 3], 2, [1, 1, 1, 1, 1, 1])\n  "
+      "sleep(0.8)");
+  (void)host.run(machine);
+  const Joints& q = host.way.back();
+  EXPECT_NEAR(q[2], -4e-4 * 30.0 * 0.8, 4e-4 * 30.0 * 0.02);
+  EXPECT_NEAR(q[5], 0.02 * 4.0 * 0.8, 0.02 * 4.0 * 0.02);
+  for (const std::size_t stiff : {0U, 1U, 3U, 4U}) EXPECT_EQ(q[stiff], 0.0);
+  FakeHost met;
+  met.state_.F_Eo_Base = {Vector3(0, 0, 50), Vector3(0, 0, -3)};
+  Machine rests = machine_of(
+      "  force_mode(p[0, 0, 0, 0, 0, 0], [0, 0, 1, 0, 0, 1], [0, 0, -50, 0, 0, 3], 2, [1, 1, 1, 1, 1, 1])\n  "
+      "sleep(0.8)");
+  (void)met.run(rests);
+  for (const double joint : met.way.back()) EXPECT_NEAR(joint, 0.0, 1e-12);
+}
+
+TEST(UrScriptMachine, AnArmThatNobodyGuidesStandsInFreedrive) {
+  FakeHost host;
+  Machine machine = machine_of(
+      "  freedrive_mode(freeAxes=[1, 1, 1, 1, 1, 1])\n  sleep(0.1)\n  end_freedrive_mode()\n  q = "
+      "get_joint_positions()\n"
+      "  textmsg(q[1])");
+  host.state_.q[1] = host.state_.target.q[1] = 0.5;
+  EXPECT_EQ(host.run(machine).state, MachineState::Ended) << machine.status().error.text;
+  for (const Joints& q : host.way) EXPECT_EQ(q[1], 0.5);
+  ASSERT_EQ(host.messages.size(), 1U);
+  EXPECT_EQ(host.messages[0], "0.5");
 }
 
 TEST(UrScriptMachine, LinesAreStraightAndArcsAreRound) {
