@@ -215,6 +215,23 @@ class ServedUr(unittest.TestCase):
             self.assertEqual(gone.returncode, 2)
             self.assertIn(f"127.0.0.1 port {30001 + served.offset}", gone.stderr)
 
+    def test_dashboard_plays_the_programs_of_a_folder(self):
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "hold.script").write_text("def hold():\n  while True:\n    sync()\n  end\nend\n")
+            with Served("--ur-programs", folder, "--model", "ur20") as served:
+                dashboard = Dashboard(served)
+                self.assertEqual(dashboard.ask("get robot model"), "UR20")
+                self.assertEqual(dashboard.ask("load other.urp"), "File not found: other.urp")
+                self.assertEqual(dashboard.ask("load hold.urp"), "Loading program: hold.urp")
+                self.assertEqual(dashboard.ask("play"), "Starting program")
+                self.assertTrue(dashboard.wait_for("programState", "PLAYING hold.urp"))
+                self.assertEqual(dashboard.ask("stop"), "Stopped")
+                self.assertTrue(dashboard.wait_for("programState", "STOPPED hold.urp"))
+                dashboard.close()
+            with Served("--ur-programs", f"{folder}/none", offset=40) as served:
+                self.assertEqual(served.process.wait(20), 2)
+                self.assertIn("--ur-programs", "".join(served.said))
+
     def test_addresses_of_others_need_consent(self):
         with Served(offset=40, address="0.0.0.0") as served:
             self.assertEqual(served.process.wait(20), 2)

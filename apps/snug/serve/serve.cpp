@@ -197,6 +197,9 @@ void add_served_ur(const Verb& verb, UrOptions& ur, const OptionRow& model) {
               "other machines can reach needs it: clients of a UR show no keys")
       .delimiter(',')
       .needs(host);
+  verb.option("--ur-programs", ur.programs, "FOLDER",
+              "folder of the programs that the dashboard may load: NAME.script there is NAME.urp to clients")
+      .needs(host);
   verb.option("--observers", ur.observers, "ADDRESS",
               "let observers on this machine see where the boxes are, over CLICK: tcp://127.0.0.1:PORT or ipc://PATH; "
               "RTDE tells nothing of boxes (`snug pack --observe`)")
@@ -219,9 +222,10 @@ OptionRow add_cell(const Verb& verb, ServeOptions& options) {
   verb.option("-o,--record", options.record, "FILE.h5",
               "write a recording; those of further runs have a number: run-2.h5");
   add_json(verb, options.json);
-  return verb.option("--model", options.ur.model, "MODEL",
-                     "of a controller of Universal Robots: ur10 runs at 125 Hz, ur10e and ur5e at 500 Hz",
-                     one_of({"ur10", "ur10e", "ur5e"}));
+  return verb.option(
+      "--model", options.ur.model, "MODEL",
+      "of a controller of Universal Robots: ur10 runs at 125 Hz, ur3e, ur5e, ur10e, ur16e, ur20 and ur30 at 500 Hz",
+      one_of({"ur10", "ur3e", "ur5e", "ur10e", "ur16e", "ur20", "ur30"}));
 }
 
 void add_serve(CLI::App& app, Action& action) {

@@ -19,6 +19,7 @@ struct UrOptions {
   std::string model = "ur10";
   int port_offset = 0;
   std::vector<std::string> clients;      ///< addresses that may connect
+  std::string programs;                  ///< folder of the programs that the dashboard loads; empty: none
   std::optional<std::string> observers;  ///< CLICK address for who looks on
 };
 

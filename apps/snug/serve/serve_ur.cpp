@@ -1,10 +1,14 @@
 // serve --ur: the cell as a controller of Universal Robots that any of its clients drives.
 #include "apps/snug/serve/serve_ur.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 
 #include "apps/snug/command_line/stop_signal.hpp"
 #include "apps/snug/serve/served_runs.hpp"
+#include "snug/core/check.hpp"
+#include "snug/core/input_error.hpp"
 #include "snug/served_ur/server.hpp"
 
 namespace snug::app {
@@ -18,6 +22,9 @@ class ServingUr {
         runs_(options, served_ur::Controller::period_of(model_.model)) {
     served_ur::ControllerSettings settings;
     settings.model = model_.model;
+    settings.programs = options.ur.programs;
+    if (!settings.programs.empty() && !std::filesystem::is_directory(settings.programs))
+      throw InputError("command line", "--ur-programs", settings.programs, "a folder");
     settings.feeds_on_request = options.plant_seed.has_value();  // as plants that are packed
     settings.begin_run = [this](int run) { return runs_.begin(run); };
     settings.end_run = [this](int run, const runs::RunResult& result) {
@@ -68,7 +75,10 @@ class ServingUr {
 }  // namespace
 
 ur::Model ur_model_of(const std::string& name) {
-  return name == "ur10e" ? ur::Model::Ur10e : name == "ur5e" ? ur::Model::Ur5e : ur::Model::Ur10;
+  const auto found =
+      std::ranges::find(ur::all_models(), name, [](const ur::ModelFacts& one) { return std::string(one.name); });
+  SNUG_CHECK(found != ur::all_models().end(), "a model that the options know");
+  return found->model;
 }
 
 int run_serve_ur(const ServeOptions& options) { return ServingUr(options).run(); }

@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include "snug/core/check.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/core/read_file.hpp"
 #include "snug/core/text.hpp"
 #include "snug/cup/phases.hpp"
 #include "snug/served_ur/internal/programs.hpp"
@@ -167,17 +170,46 @@ bool Controller::obey(std::string_view line) {
 
 void Controller::run_program(std::string_view text) {
   program_error_.clear();
+  is_loaded_last_ = false;
   programs_->start(text, data_, may_move());
 }
 void Controller::stop_program() { programs_->stop(); }
+
+bool Controller::load_program(std::string_view file) {
+  namespace fs = std::filesystem;
+  const std::string name(file.substr(file.find_last_of("/\\") + 1));
+  if (settings_.programs.empty() || name.empty() || name.front() == '.') return false;
+  try {
+    loaded_text_ = read_file(fs::path(settings_.programs) / fs::path(name).replace_extension(".script"),
+                             "a program in URScript", kLongestProgram);
+  } catch (const InputError&) {
+    return false;
+  }
+  programs_->abort();
+  loaded_name_ = name;
+  is_loaded_last_ = true;
+  return true;
+}
+
+bool Controller::play() {
+  if (programs_->is_active()) return programs_->resume();
+  if (loaded_name_.empty() || !may_move()) return false;
+  run_program(loaded_text_);
+  is_loaded_last_ = true;
+  return programs_->is_active();
+}
+
 bool Controller::pause_program() { return programs_->pause(); }
-bool Controller::resume_program() { return programs_->resume(); }
 void Controller::close_popup() { programs_->close_popup(); }
-const std::string& Controller::program_name() const { return programs_->name(); }
+const std::string& Controller::program_name() const { return is_loaded_last_ ? loaded_name_ : programs_->name(); }
 
 void Controller::run_programs() {
   using Kind = internal::ProgramNews::Kind;
   programs_->step(data_);
+  if (programs_->take_protective_stop() && data_.safety_mode == SafetyMode::Normal) {
+    if (run_ && !is_ended_) run_->stand();
+    stop_for_protection("a program asked for a protective stop");
+  }
   data_.runtime_state = !programs_->is_active()  ? RuntimeState::Stopped
                         : programs_->is_paused() ? RuntimeState::Paused
                                                  : RuntimeState::Playing;
@@ -259,19 +291,26 @@ void Controller::take_next_part() {
   part_since_ = period_ + std::llround(kPartTime / period_of(settings_.model));
 }
 
+void Controller::stand() {
+  data_.target_q = to_values(state().arm->machine.joints.q);
+  data_.target_qd = data_.target_qdd = {};
+}
+
+void Controller::stop_for_protection(const std::string& why) {
+  stand();
+  programs_->abort();
+  tell(ur::error_message(data_.timestamp, 157, 0, 3, why));
+  set_safety(SafetyMode::ProtectiveStop);
+}
+
 /// The arm's stop is released at once: it is the controller that keeps it standing, so that the cell goes on. What the
 /// arm pressed on comes to rest meanwhile and shows its load again when the arm moves: that is no new stop.
 void Controller::fail(const cell::Failure& failure) {
   if (run_->is_stopped_for_protection()) {
     run_->acknowledge();
     if (moving_out_ > 0) return;
-    data_.target_q = to_values(run_->state().arm->machine.joints.q);
-    data_.target_qd = data_.target_qdd = {};
-    if (data_.safety_mode == SafetyMode::ProtectiveStop) return;
-    programs_->abort();
-    tell(ur::error_message(data_.timestamp, 157, 0, 3, failure.text));
-    set_safety(SafetyMode::ProtectiveStop);
-    return;
+    if (data_.safety_mode == SafetyMode::ProtectiveStop) return stand();
+    return stop_for_protection(failure.text);
   }
   end(failure.text);
   is_ended_ = true;

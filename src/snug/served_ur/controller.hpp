@@ -25,6 +25,8 @@ struct ControllerSettings {
   ur::Model model = ur::Model::Ur10;
   bool feeds_on_request = false;       ///< a box comes only when it is asked for, where robot.io has next_part
   bool programs_reach_others = false;  ///< programs may open sockets to other machines
+  /// Folder of the programs that the dashboard may load: NAME.script for NAME.urp; empty: there are none.
+  std::string programs = {};
   /// What is to be done with each run, from 1; asked for when it begins.
   std::function<runs::OutsideRunOptions(int run)> begin_run = {};
   std::function<void(int run, const runs::RunResult& result)> end_run = {};
@@ -75,13 +77,20 @@ class Controller {
   /// runs beside it.
   void run_program(std::string_view text);
   void stop_program();
+  /// Reads the program of this file, for play(): its folders do not count, NAME.urp is NAME.script. The program that
+  /// runs ends. False: ControllerSettings::programs has no such file, or one above kLongestProgram.
+  bool load_program(std::string_view file);
+  /// Goes on with the program that is paused, or begins the one that was loaded. False: there is none, it is no
+  /// program, or one runs.
+  bool play();
   /// False: no program runs.
   bool pause_program();
-  /// False: no program is paused.
-  bool resume_program();
   void close_popup();
-  /// Of the program that runs or ran last; empty before the first.
+  /// Of the program that runs or ran last, or was loaded since; empty before the first.
   [[nodiscard]] const std::string& program_name() const;
+  /// The file that was loaded last, without its folders; empty: none.
+  [[nodiscard]] const std::string& loaded_program() const { return loaded_name_; }
+  static constexpr std::size_t kLongestProgram = 5'000'000;  ///< bytes
   /// Line, column and what was wrong with the program that failed last; empty: none since run_program().
   [[nodiscard]] const std::string& program_error() const { return program_error_; }
 
@@ -107,6 +116,8 @@ class Controller {
   void set_safety(ur::SafetyMode mode);
   [[nodiscard]] bool may_move() const;
   void hold();
+  void stand();
+  void stop_for_protection(const std::string& why);
   void run_programs();
   void tell(std::string packet);
   void begin_run();
@@ -134,6 +145,8 @@ class Controller {
   std::int64_t part_since_ = 0;  ///< period from which a part that was asked for is told of
   std::unique_ptr<internal::Programs> programs_;
   std::string program_error_;
+  std::string loaded_name_, loaded_text_;
+  bool is_loaded_last_ = false;  ///< since another program was sent
   ur::RobotData data_;
   ur::RobotInputs inputs_;
   std::int64_t period_ = 0;

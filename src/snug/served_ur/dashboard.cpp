@@ -10,6 +10,8 @@ namespace {
 
 using ur::DashboardCommand;
 
+constexpr std::string_view kInstallation = "installation default.installation";  // the only one
+
 std::string version_of(const ur::ModelFacts& model) {
   return fmt::format("URSoftware {}.{}.{}.{} (Jan 01 2020)", model.version[0], model.version[1], model.version[2],
                      model.version[3]);
@@ -23,17 +25,18 @@ std::string ask(DashboardCommand command, const Controller& controller) {
   const ur::RobotData& data = controller.data();
   switch (command) {
     case DashboardCommand::GetLoadedProgram:
-      return "No program loaded";
+      return controller.loaded_program().empty() ? "No program loaded"
+                                                 : "Loaded program: /programs/" + controller.loaded_program();
     case DashboardCommand::GetOperationalMode:
       return "NONE";
     case DashboardCommand::GetRobotModel:
       return controller.model().dashboard;
     case DashboardCommand::GetSerialNumber:
-      return "0000000000";
+      return "2000000000";
     case DashboardCommand::IsInRemoteControl:
       return "true";
     case DashboardCommand::IsProgramSaved:
-      return "true";
+      return "true " + controller.loaded_program();
     case DashboardCommand::PolyscopeVersion:
     case DashboardCommand::Version:
       return version_of(controller.model());
@@ -84,17 +87,20 @@ DashboardAnswer answer_dashboard(std::string_view line, Controller& controller) 
     case DashboardCommand::Pause:
       return {controller.pause_program() ? "Pausing program" : "Failed to execute: pause"};
     case DashboardCommand::Play:
-      return {controller.resume_program() ? "Starting program" : "Failed to execute: play"};
+      return {controller.play() ? "Starting program" : "Failed to execute: play"};
     case DashboardCommand::CloseSafetyPopup:
       return {"closing safety popup"};
     case DashboardCommand::Popup:
       return {"showing popup"};
+    case DashboardCommand::SaveLog:
+      return {"Log saved to disk"};
     case DashboardCommand::AddToLog:
       return {"Added log message"};
     case DashboardCommand::ClearOperationalMode:
       return {"No longer controlling the operational mode. Current operational mode: 'NONE'."};
     case DashboardCommand::Load:
-      return {fmt::format("File not found: {}", said.argument)};
+      if (said.argument == kInstallation) return {"Loading installation: default.installation"};
+      return {(controller.load_program(said.argument) ? "Loading program: " : "File not found: ") + said.argument};
     case DashboardCommand::Quit:
       return {"Disconnected", true};
     case DashboardCommand::Shutdown:

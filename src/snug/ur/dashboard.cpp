@@ -42,6 +42,7 @@ constexpr std::array kCommands = {
     Words{"running", DashboardCommand::Running},
     Words{"safetymode", DashboardCommand::SafetyMode},
     Words{"safetystatus", DashboardCommand::SafetyStatus},
+    Words{"savelog", DashboardCommand::SaveLog},
     Words{"shutdown", DashboardCommand::Shutdown},
     Words{"stop", DashboardCommand::Stop},
     Words{"unlock protective stop", DashboardCommand::UnlockProtectiveStop},

@@ -33,6 +33,7 @@ enum class DashboardCommand {
   Running,
   SafetyMode,
   SafetyStatus,
+  SaveLog,
   Shutdown,
   Stop,
   UnlockProtectiveStop,

@@ -139,7 +139,7 @@ ByteWriter kinematics_part(const RobotFacts& robot) {
   ByteWriter out;
   for (std::size_t j = 0; j < 6; ++j) out.u32(checksum_of(robot, j));
   for (const Values6* row : {&robot.dh_theta, &robot.dh_a, &robot.dh_d, &robot.dh_alpha}) out.f64s(*row);
-  out.u32(0);  // calibration status: calibrated
+  out.u32(2);  // calibration status: linearised, as of a calibrated robot
   return out;
 }
 

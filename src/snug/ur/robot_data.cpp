@@ -29,11 +29,24 @@ const char* name_of(SafetyMode mode) {
   return "";
 }
 
-const ModelFacts& facts_of(Model model) {
-  static constexpr ModelFacts kUr10{Model::Ur10, "ur10", "UR10", false, 125, {3, 15, 8, 106339}, 2};
-  static constexpr ModelFacts kUr10e{Model::Ur10e, "ur10e", "UR10", true, 500, {5, 9, 4, 1031110}, 2};
-  static constexpr ModelFacts kUr5e{Model::Ur5e, "ur5e", "UR5", true, 500, {5, 9, 4, 1031110}, 1};
-  return model == Model::Ur10 ? kUr10 : model == Model::Ur10e ? kUr10e : kUr5e;
-}
+namespace {
+
+using SoftwareVersion = std::array<std::uint32_t, 4>;
+constexpr SoftwareVersion kCb3{3, 15, 8, 106339}, kESeries{5, 9, 4, 1031110}, kLarge{5, 15, 0, 126450};
+
+constexpr std::array kModels = {
+    ModelFacts{Model::Ur10, "ur10", "UR10", false, 125, kCb3, 2},
+    ModelFacts{Model::Ur10e, "ur10e", "UR10", true, 500, kESeries, 2},
+    ModelFacts{Model::Ur5e, "ur5e", "UR5", true, 500, kESeries, 1},
+    ModelFacts{Model::Ur3e, "ur3e", "UR3", true, 500, kESeries, 3},
+    ModelFacts{Model::Ur16e, "ur16e", "UR16", true, 500, kESeries, 4},
+    ModelFacts{Model::Ur20, "ur20", "UR20", true, 500, kLarge, 7},
+    ModelFacts{Model::Ur30, "ur30", "UR30", true, 500, kLarge, 8},
+};
+
+}  // namespace
+
+const ModelFacts& facts_of(Model model) { return kModels[static_cast<std::size_t>(model)]; }
+std::span<const ModelFacts> all_models() { return kModels; }
 
 }  // namespace snug::ur

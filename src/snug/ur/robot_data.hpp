@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 
 namespace snug::ur {
@@ -29,7 +30,7 @@ enum class RuntimeState : std::uint32_t {
 inline constexpr double kSupplyVoltage = 48.0;  ///< V, of the robot while it has power
 inline constexpr double kTemperature = 25.0;    ///< degrees Celsius, of everything
 
-enum class Model { Ur10, Ur10e, Ur5e };
+enum class Model { Ur10, Ur10e, Ur5e, Ur3e, Ur16e, Ur20, Ur30 };
 
 /// What a model of the robot is to its clients.
 struct ModelFacts {
@@ -42,6 +43,8 @@ struct ModelFacts {
   std::int32_t robot_type = 2;
 };
 [[nodiscard]] const ModelFacts& facts_of(Model model);
+/// In the order of Model.
+[[nodiscard]] std::span<const ModelFacts> all_models();
 
 struct Registers {
   std::array<bool, 128> bits{};

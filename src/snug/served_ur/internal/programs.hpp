@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "snug/served_ur/internal/script_sockets.hpp"
@@ -35,6 +36,8 @@ class Programs final : private urscript::Host {
   void abort();
   bool pause();
   bool resume();
+  /// A program has asked for a protective stop since this was asked last.
+  [[nodiscard]] bool take_protective_stop() { return std::exchange(state_.wants_protective_stop, false); }
   /// The program goes on behind its popup.
   void close_popup() { state_.has_popup = false; }
 

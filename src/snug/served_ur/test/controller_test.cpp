@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include "cell.hpp"
+#include "snug/core/temporary_folder.hpp"
 #include "snug/served_ur/dashboard.hpp"
 
 namespace snug::served_ur {
@@ -164,6 +167,62 @@ TEST(Controller, SaysWhatIsWrongWithAProgram) {
   EXPECT_FALSE(controller.data().is_program_running());
 }
 
+TEST(Controller, LoadsProgramsOfItsFolderAndPlaysThem) {
+  const TemporaryFolder own("controller-programs");
+  const std::filesystem::path folder = own.path() / "programs";
+  std::filesystem::create_directory(folder);
+  std::ofstream(folder / "wait_program.script") << "def p():\n  while True:\n    sleep(0.1)\n  end\nend\n";
+  std::ofstream(folder / "bad.script") << "def p(\n";
+  std::ofstream(folder.parent_path() / "outside.script") << "def p():\n  sync()\nend\n";
+  ControllerSettings settings;
+  settings.programs = folder.string();
+  Controller controller(demonstrator_cell(), settings);
+  EXPECT_EQ(ask(controller, "play"), "Failed to execute: play");
+  EXPECT_EQ(ask(controller, "get loaded program"), "No program loaded");
+  for (const std::string file : {"../outside.urp", "..", "", ".urp", "other.urp", "/etc/passwd"})
+    EXPECT_EQ(ask(controller, "load " + file), "File not found: " + file);
+  EXPECT_EQ(ask(controller, "load /ursim/programs/wait_program.urp"),
+            "Loading program: /ursim/programs/wait_program.urp");
+  EXPECT_EQ(ask(controller, "programState"), "STOPPED wait_program.urp");
+  EXPECT_EQ(ask(controller, "get loaded program"), "Loaded program: /programs/wait_program.urp");
+  EXPECT_EQ(ask(controller, "isProgramSaved"), "true wait_program.urp");
+  EXPECT_EQ(ask(controller, "play"), "Starting program");
+  step(controller, 3);
+  EXPECT_EQ(ask(controller, "programState"), "PLAYING wait_program.urp");
+  EXPECT_EQ(ask(controller, "pause"), "Pausing program");
+  step(controller, 3);
+  EXPECT_EQ(ask(controller, "programState"), "PAUSED wait_program.urp");
+  EXPECT_EQ(ask(controller, "play"), "Starting program");
+  step(controller, 3);
+  EXPECT_EQ(ask(controller, "running"), "Program running: true");
+  EXPECT_EQ(ask(controller, "load bad.urp"), "Loading program: bad.urp");  // the one that ran has ended
+  step(controller, 1);
+  EXPECT_EQ(ask(controller, "programState"), "STOPPED bad.urp");
+  EXPECT_EQ(ask(controller, "play"), "Failed to execute: play");
+  controller.run_program("def sent():\n  sleep(1)\nend\n");
+  step(controller, 1);
+  EXPECT_EQ(ask(controller, "programState"), "PLAYING sent");
+}
+
+TEST(Controller, AProgramMayAskForAProtectiveStop) {
+  Controller controller(demonstrator_cell(), {});
+  const ur::Values6 start = controller.data().actual_q;
+  controller.run_program(
+      "def p():\n  set_standard_digital_out(0, True)\n  speedj([0.5, 0, 0, 0, 0, 0], 1, 0.5)\n  protective_stop()\n"
+      "  sleep(0.1)\n  movej([0, -1, 1, 0, 0, 0])\nend\n");
+  for (int i = 0; i < 200 && controller.data().safety_mode == ur::SafetyMode::Normal; ++i) controller.step();
+  EXPECT_EQ(ask(controller, "safetystatus"), "Safetystatus: PROTECTIVE_STOP");
+  step(controller, 30);
+  const ur::Values6 stands = controller.data().actual_q;
+  EXPECT_GT(stands[0], start[0] + 0.05);
+  EXPECT_EQ(ask(controller, "running"), "Program running: false");
+  EXPECT_EQ(controller.data().digital_outputs, 1u);  // the vacuum stays on
+  EXPECT_TRUE(controller.unlock_protective_stop());
+  step(controller, 50);
+  EXPECT_EQ(controller.data().safety_mode, ur::SafetyMode::Normal);
+  EXPECT_EQ(controller.data().actual_q, stands);
+}
+
 TEST(Controller, StartsNoProgramWithoutPowerAndEndsOneThatRuns) {
   Controller controller(demonstrator_cell(), {});
   controller.run_program("def wait():\n  sleep(5)\nend\n");
@@ -195,6 +254,9 @@ TEST(Dashboard, AnswersAsAController) {
   EXPECT_EQ(ask(controller, "running"), "Program running: false");
   EXPECT_EQ(ask(controller, "is in remote control"), "true");
   EXPECT_EQ(ask(controller, "load x.urp"), "File not found: x.urp");
+  EXPECT_EQ(ask(controller, "load installation default.installation"), "Loading installation: default.installation");
+  EXPECT_EQ(ask(controller, "load installation other.installation"), "File not found: installation other.installation");
+  EXPECT_EQ(ask(controller, "saveLog"), "Log saved to disk");
   EXPECT_EQ(ask(controller, "make coffee"), "could not understand: 'make coffee'");
   EXPECT_TRUE(answer_dashboard("quit", controller).is_last);
 }

@@ -39,7 +39,7 @@ std::map<int, std::string> parts_of(const std::string& packet) {
 }
 
 TEST(Primary, PartsHaveTheSizesThatClientsExpect) {
-  for (const Model model : {Model::Ur10, Model::Ur10e, Model::Ur5e}) {
+  for (const Model model : {Model::Ur10, Model::Ur10e, Model::Ur5e, Model::Ur20}) {
     const ModelFacts& facts = facts_of(model);
     const std::string packet = robot_state(some_data(), RobotFacts{}, facts);
     EXPECT_LT(packet.size(), 2000U);
