@@ -88,13 +88,15 @@ std::string as_bytes(std::int32_t value) {
   return bytes;
 }
 
-/// Waits for `parse` to find something in what came; after the time, or when the socket closes, `otherwise`.
+/// What `parse` finds in what came, at once where it is there; after the time, or when the socket closes, `otherwise`.
 Value read_socket(CallContext& call, std::size_t name_index, std::size_t timeout_index, std::size_t most,
                   std::function<std::optional<Value>(const std::string&)> parse, Value otherwise) {
   const std::string name = socket_name(call, name_index);
   const double timeout = call.number(timeout_index, 2.0);
   const double end = timeout > 0.0 ? call.time + timeout : std::numeric_limits<double>::infinity();
   auto buffer = std::make_shared<std::string>();
+  call.host.receive(name, *buffer, most);
+  if (std::optional<Value> found = parse(*buffer)) return std::move(*found);
   call.wait = [name, end, most, buffer, parse = std::move(parse), otherwise = std::move(otherwise)](CallContext& later,
                                                                                                     Value& result) {
     later.host.receive(name, *buffer, most);

@@ -130,6 +130,24 @@ TEST(UrScriptMachine, WhoWaitsInACriticalSectionLetsOthersRun) {
   EXPECT_GT(host.way.back()[0], 0.03);
 }
 
+TEST(UrScriptMachine, WhatHasComeIsReadAtOnce) {
+  FakeHost host;
+  host.incoming = std::string("\0\0\0\7", 4) + std::string("\0\0\0\1", 4) + std::string(4 * 98, '\0');
+  Machine machine = machine_of(R"(  socket_open("127.0.0.1", 50003)
+  sum = 0
+  n = 0
+  while n < 100:
+    got = socket_read_binary_integer(1)
+    sum = sum + got[1]
+    n = n + 1
+  end
+  textmsg(sum))");
+  EXPECT_EQ(host.run(machine).state, MachineState::Ended) << machine.status().error.text;
+  ASSERT_EQ(host.messages.size(), 1U);
+  EXPECT_EQ(host.messages[0], "8");
+  EXPECT_LT(host.way.size(), 5U);  // periods
+}
+
 TEST(UrScriptMachine, ACriticalSectionThatDoesNotWaitIsNotInterrupted) {
   FakeHost host;
   MachineLimits limits;
