@@ -45,6 +45,7 @@ int run_script(const RunOptions& options) {
   ServedRuns runs(options.cell, served_ur::Controller::period_of(model));
   served_ur::ControllerSettings settings;
   settings.model = model;
+  settings.feeds_when_placed = true;
   settings.begin_run = [&](int run) { return runs.begin(run); };
   settings.end_run = [&](int run, const runs::RunResult& result) { runs.end(run, result); };
   served_ur::Controller controller(runs.simulation(), std::move(settings));

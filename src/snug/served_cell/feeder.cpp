@@ -1,6 +1,7 @@
 // Feeder: brings the boxes of the sequence to the aligner, one after the other, for controllers that do not.
 #include "snug/served_cell/feeder.hpp"
 
+#include <cmath>
 #include <optional>
 
 #include "snug/cell/aligner_feed.hpp"
@@ -35,6 +36,16 @@ int Feeder::next(const cell::Simulation& simulation, const cell::CellState& stat
     if ((p_WO - p_WP).norm() < radius + radius_of(scenario, items[i])) return -1;
   }
   return next_;
+}
+
+bool Feeder::is_last_placed(const cell::Simulation& simulation, const cell::CellState& state) const {
+  if (next_ == 0) return true;
+  const physics::BodyId last = simulation.world().parcels[static_cast<std::size_t>(next_ - 1)];
+  if (!state.world.bodies[static_cast<std::size_t>(last.index)].is_present) return true;
+  const model::Container* target = model::find_container(simulation.scenario(), simulation.scenario().target);
+  if (target == nullptr) return true;
+  const Vector3 p_TP = target->X_WT.inverse() * physics::pose_of(simulation.world().model, state.world, last).p;
+  return std::abs(p_TP.x()) < 0.5 * target->inner_size.x() && std::abs(p_TP.y()) < 0.5 * target->inner_size.y();
 }
 
 }  // namespace snug::served_cell

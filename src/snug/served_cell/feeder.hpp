@@ -13,6 +13,8 @@ class Feeder {
   [[nodiscard]] int next(const cell::Simulation& simulation, const cell::CellState& state) const;
   /// The item that comes next, whatever stands there, or -1.
   [[nodiscard]] int coming(const cell::Simulation& simulation) const;
+  /// The item that came last is over the container, or not in the cell any more; true before the first.
+  [[nodiscard]] bool is_last_placed(const cell::Simulation& simulation, const cell::CellState& state) const;
   /// It came.
   void advance() { ++next_; }
 

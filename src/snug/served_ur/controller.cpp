@@ -267,7 +267,7 @@ void Controller::advance_cell() {
   if (!run_) begin_run();
   take_next_part();
   const int item = settings_.feeds_on_request && io_.next_part ? -1 : feeder_.next(simulation_, run_->state());
-  if (item >= 0) {
+  if (item >= 0 && (!settings_.feeds_when_placed || feeder_.is_last_placed(simulation_, run_->state()))) {
     (void)run_->feed(item, 0);
     feeder_.advance();
   }

@@ -23,7 +23,10 @@ class Programs;
 
 struct ControllerSettings {
   ur::Model model = ur::Model::Ur10;
-  bool feeds_on_request = false;       ///< a box comes only when it is asked for, where robot.io has next_part
+  bool feeds_on_request = false;  ///< a box comes only when it is asked for, where robot.io has next_part
+  /// Boxes that come by themselves wait until the one before is over the container, or gone: it may be put down at the
+  /// aligner to be grasped anew.
+  bool feeds_when_placed = false;
   bool programs_reach_others = false;  ///< programs may open sockets to other machines
   /// Folder of the programs that the dashboard may load: NAME.script for NAME.urp; empty: there are none.
   std::string programs = {};

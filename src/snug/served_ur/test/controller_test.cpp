@@ -247,6 +247,22 @@ TEST(Controller, TwoOfThemGiveTheSameBytes) {
   EXPECT_EQ(a.data().digital_inputs, b.data().digital_inputs);
 }
 
+TEST(Feeder, KnowsWhetherTheBoxBeforeIsPlaced) {
+  const cell::Simulation& simulation = demonstrator_cell();
+  cell::CellState state = simulation.make_state();
+  served_cell::Feeder feeder;
+  EXPECT_TRUE(feeder.is_last_placed(simulation, state));
+  feeder.advance();
+  physics::BodyState& box = state.world.bodies[static_cast<std::size_t>(simulation.world().parcels[0].index)];
+  EXPECT_TRUE(feeder.is_last_placed(simulation, state));  // not in the cell
+  box.is_present = true;
+  const model::Container* target = model::find_container(simulation.scenario(), simulation.scenario().target);
+  box.p_WBcm = target->X_WT * Vector3(0.5 * target->inner_size.x() + 0.2, 0, 0.1);
+  EXPECT_FALSE(feeder.is_last_placed(simulation, state));
+  box.p_WBcm = target->X_WT * Vector3(0, 0, 0.1);
+  EXPECT_TRUE(feeder.is_last_placed(simulation, state));
+}
+
 TEST(Dashboard, AnswersAsAController) {
   Controller controller(demonstrator_cell(), {});
   EXPECT_EQ(ask(controller, "PolyscopeVersion"), "URSoftware 3.15.8.106339 (Jan 01 2020)");
