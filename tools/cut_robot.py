@@ -4,6 +4,7 @@
   cut_robot.py N            N of each: the robot has to stand within 0.2 s of its own time, its outputs as they were, and the session has to go on
                             (a frozen client by itself, the others by --resume); in the end no box is lost
   cut_robot.py N --how cut  of one kind: killed, frozen, cut
+  cut_robot.py N --within S an instant within S s after the robot began to move (5): the longer, the more boxes between two of them
   cut_robot.py N --fresh    each instant in a session of its own, which does not go on
 
 The client reaches the robot through a relay of this program, which stops to forward in both directions where it is cut: nobody is told. Boxes are
@@ -211,13 +212,13 @@ class Cell:
         return collections.Counter(box["state"] for box in json.loads(out.splitlines()[-1])["boxes"]) if out.strip() else collections.Counter()
 
 
-def strike(cell, how, draw):
+def strike(cell, how, draw, within):
     """One instant. Returns how long the robot went on (s of its time), whether its outputs were on."""
     if cell.client is None or cell.has_ended():
         cell.start()
     if not cell.watch.wait(lambda now: now[1] > 0.05 or cell.has_ended(), 60):
         raise Found(f"{how}: the robot does not move: {cell.why()}")
-    end = time.monotonic() + draw.uniform(0.0, 5.0)
+    end = time.monotonic() + draw.uniform(0.0, within)
     while time.monotonic() < end and not cell.has_ended():
         time.sleep(0.005)
     if cell.has_ended():
@@ -255,7 +256,7 @@ def go_on(cell, how):
         raise Found(f"{how}: the session does not go on: {cell.why()}")
 
 
-def cut_robot(snug, words, count, hows=HOWS, seed=1, say=print, goes_on=True):
+def cut_robot(snug, words, count, hows=HOWS, seed=1, say=print, goes_on=True, within=5.0):
     """`words`: scenario and sequence. Raises Found."""
     draw, longest, held, sessions, became = random.Random(seed), collections.Counter(), collections.Counter(), 0, collections.Counter()
     cell = None
@@ -271,7 +272,7 @@ def cut_robot(snug, words, count, hows=HOWS, seed=1, say=print, goes_on=True):
                 done = 0
                 while done < count:
                     cell = cell or fresh()
-                    struck = strike(cell, how, draw)
+                    struck = strike(cell, how, draw, within)
                     if struck is None:  # the session came to its end
                         if cell.client.returncode != 0:
                             raise Found(f"{how}: the session ended with {cell.client.returncode}: {cell.why()}")
@@ -309,13 +310,14 @@ def main():
     parser.add_argument("count", type=int)
     parser.add_argument("--how", choices=HOWS, action="append")
     parser.add_argument("--fresh", action="store_true")
+    parser.add_argument("--within", type=float, default=5.0)
     parser.add_argument("--sequence", default="1")
     parser.add_argument("--snug", default=str(ROOT / "build" / "snug"), help="the program (default: build/snug)")
     parser.add_argument("--seed", type=int, default=1)
     words = parser.parse_args()
     try:
         cut_robot(words.snug, (DEMONSTRATOR, "--sequence", words.sequence), words.count, words.how or HOWS, words.seed,
-                  lambda line: print(line, flush=True), not words.fresh)
+                  lambda line: print(line, flush=True), not words.fresh, words.within)
     except Found as found:
         print(f"FOUND: {found}")
         sys.exit(1)

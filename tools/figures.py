@@ -128,7 +128,7 @@ def acceptance(words):
 
 
 UR_PACK = ["--samples", "0", "--decision-time", "0.2"]
-UR_PLANTS = (1, 2, 3)
+UR_PLANTS = (1, 2)
 
 
 def serve_ur(words, sequence, plant, boxes):
