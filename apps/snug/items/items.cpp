@@ -12,6 +12,7 @@
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/shipped.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/read_file.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/model/items_file.hpp"
 #include "snug/packing/representatives.hpp"
@@ -109,6 +110,23 @@ std::string boxes_as_yaml(const model::Scenario& drawn_from, const std::vector<m
 }
 
 }  // namespace
+
+int run_items_read(const ItemsReadOptions& options) {
+  std::optional<OutputFile> output = reserve({{"the sheet", options.sheet}}, options.output);
+  const std::string text = read_file(options.sheet, "a table of boxes (CSV)");
+  const model::ItemsSheet sheet = model::read_items_sheet(text, options.sheet, options.answers);
+  if (!sheet.questions.empty()) {
+    const model::SheetQuestion& open = sheet.questions.front();
+    const std::string option = open.about == "decimal" ? "--decimal" : "--" + open.about + "-unit";
+    std::string choices;
+    for (const auto& [answer, meaning] : open.choices)
+      choices += fmt::format("{}{} {} ({})", choices.empty() ? "" : ", ", option, answer, meaning);
+    throw InputError(options.sheet, open.about, "a sheet that does not say it", choices);
+  }
+  (void)model::parse_orders_csv(sheet.orders, options.sheet);  // says where a number is none
+  print_or_write(sheet.orders, std::move(output));
+  return kSuccess;
+}
 
 int run_items_reduce(const ItemsReduceOptions& options) {
   std::optional<OutputFile> output = reserve({{"the orders", options.orders}}, options.output);

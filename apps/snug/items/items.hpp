@@ -6,6 +6,7 @@
 #include <string>
 
 #include "apps/snug/command_line/verb.hpp"
+#include "snug/model/items_sheet.hpp"
 
 namespace snug::app {
 
@@ -31,7 +32,14 @@ struct ItemsSequenceOptions {
   std::optional<std::string> output;
 };
 
+struct ItemsReadOptions {
+  std::string sheet;
+  model::SheetAnswers answers;
+  std::optional<std::string> output;
+};
+
 void add_items(CLI::App& app, Action& action);
+[[nodiscard]] int run_items_read(const ItemsReadOptions& options);
 [[nodiscard]] int run_items_reduce(const ItemsReduceOptions& options);
 [[nodiscard]] int run_items_sequence(const ItemsSequenceOptions& options);
 

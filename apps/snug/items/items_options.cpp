@@ -9,6 +9,13 @@
 namespace snug::app {
 namespace {
 
+constexpr const char* kReadHelp =
+    R"(A table as people keep it becomes a CSV of orders (docs/formats.md): commas, semicolons or tabs between columns, headings in
+English, German, Dutch or French, in any order, units in headings or behind numbers. What the sheet does not say has to be said;
+the error names the options and what each would mean for the first box.
+Example:
+  snug items read scenarios/examples/sheet.csv --length-unit cm --mass-unit g -o orders.csv)";
+
 constexpr const char* kReduceHelp =
     R"(Report section 3.1.1: boxes of nearly equal size and mass become one, the most frequent of these are kept, and it is
 said how many of all boxes have a representative near their size. ORDERS is a CSV with a header or JSON in the BED-BPP form.
@@ -26,10 +33,30 @@ Examples:
 
 constexpr const char* kItemsHelp =
     R"(Examples:
+  snug items read scenarios/examples/sheet.csv --length-unit cm --mass-unit g -o orders.csv
   snug items reduce scenarios/orders-example.csv --count 4 -o types.yaml
   snug items sequence scenarios/box-demonstrator.yaml --types types.yaml --fill 90 -o sequences.yaml
   snug pack scenarios/box-demonstrator.yaml --items sequences.yaml --sequence drawn-1
-`snug items reduce --help` and `snug items sequence --help` tell more.)";
+`snug items read --help`, `snug items reduce --help` and `snug items sequence --help` tell more.)";
+
+void add_read(CLI::App& parent, Action& action) {
+  CLI::App& verb = *parent.add_subcommand("read", "a table of boxes as people keep it, as a CSV of orders");
+  const auto options = std::make_shared<ItemsReadOptions>();
+  verb.add_option("sheet", options->sheet, "table with a header")->required()->type_name("SHEET.csv");
+  verb.add_option("--length-unit", options->answers.length, "of edges for which the sheet has no unit: mm, cm, m or in")
+      ->check(one_of({"mm", "cm", "m", "in"}))
+      ->type_name("UNIT");
+  verb.add_option("--mass-unit", options->answers.mass, "of masses for which the sheet has no unit: kg, g or lb")
+      ->check(one_of({"kg", "g", "lb"}))
+      ->type_name("UNIT");
+  verb.add_option("--decimal", options->answers.decimal,
+                  "what stands before decimals where it is unclear: point or comma")
+      ->check(one_of({"point", "comma"}))
+      ->type_name("MARK");
+  verb.add_option("-o,--output", options->output, "file to write instead of stdout")->type_name("FILE.csv");
+  verb.footer(kReadHelp);
+  verb.callback([options, &action] { action = [options] { return run_items_read(*options); }; });
+}
 
 void add_reduce(CLI::App& parent, Action& action) {
   CLI::App& verb = *parent.add_subcommand("reduce", "few boxes that stand for those of many orders");
@@ -94,8 +121,9 @@ void add_sequence(CLI::App& parent, Action& action) {
 }  // namespace
 
 void add_items(CLI::App& app, Action& action) {
-  CLI::App& verb = *app.add_subcommand("items", "boxes that stand for many, and sequences of boxes");
+  CLI::App& verb = *app.add_subcommand("items", "tables of boxes, boxes that stand for many, and sequences of boxes");
   verb.require_subcommand(1);
+  add_read(verb, action);
   add_reduce(verb, action);
   add_sequence(verb, action);
   verb.footer(kItemsHelp);
