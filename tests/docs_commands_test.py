@@ -240,6 +240,19 @@ class Init(unittest.TestCase):
         path, lines = self.begin("pallet")
         self.assertIn("executed           6 boxes", "".join(self.run_next(path, lines)))
 
+    def pack_two(self, kind):
+        """Two boxes through the arm, whose file lies beside the cell."""
+        path, _ = self.begin(kind)
+        (path / "two.csv").write_text("length_mm,width_mm,height_mm,mass_kg,count\n190,140,90,0.8,2\n", encoding="utf-8")
+        line = f"snug pack {kind}.yaml --items two.csv --sequence two --samples 0 --decision-time 0.05"
+        self.assertIn("executed           2 boxes", "".join(self.run_next(path, [line])))
+
+    def test_ur_packs_through_its_arm(self):
+        self.pack_two("ur")
+
+    def test_gantry_packs_through_its_axes(self):
+        self.pack_two("gantry")
+
     def test_scene_runs_and_its_bodies_come_to_rest(self):
         path, lines = self.begin("scene")
         out = "".join(self.run_next(path, lines))

@@ -27,6 +27,14 @@ constexpr std::array kKinds = {
     InitKind{"pallet", "the same with a pallet in the place of the tote: boxes stand free, layer on layer",
              "snug pack pallet.yaml --sequence first --program program.csv -o run.h5\n"
              "snug report run.h5 -o run.html\n"},
+    InitKind{"ur", "a UR5e and a small tote",
+             "snug pack ur.yaml --sequence first --program program.csv -o run.h5\n"
+             "snug report run.h5 -o run.html\n",
+             "ur5e"},
+    InitKind{"gantry", "a gantry over a pallet",
+             "snug pack gantry.yaml --sequence first --program program.csv -o run.h5\n"
+             "snug report run.h5 -o run.html\n",
+             "gantry"},
     InitKind{"scene", "bodies, contacts and forces alone, without robot or packing",
              "snug simulate scene.yaml -o run.h5\n"
              "snug report run.h5 -o run.html\n"},
@@ -37,17 +45,27 @@ struct InitOptions {
   std::string folder;  ///< to write into; made when it is not there
 };
 
+void require_free(const fs::path& file) {
+  std::error_code error;
+  if (fs::exists(fs::symlink_status(file, error)))
+    throw InputError(file.string(), "", "a file that is there already: not overwritten", "another folder");
+}
+
 int run_init(const InitOptions& options) {
   const auto kind = std::ranges::find_if(kKinds, [&](const InitKind& known) { return options.kind == known.name; });
   SNUG_CHECK(kind != kKinds.end(), "a kind that the parser let pass");
   const std::string name = options.kind + ".yaml";
-  const std::string text = read_file(shipped_folder() / "scenarios/init" / name, "a scenario to begin with");
+  std::string text = read_file(shipped_folder() / "scenarios/init" / name, "a scenario to begin with");
   const fs::path folder = options.folder;
   make_folder("folder", folder);
   const fs::path file = folder / name;
-  std::error_code error;
-  if (fs::exists(fs::symlink_status(file, error))) {
-    throw InputError(file.string(), "", "a file that is there already: not overwritten", "another folder");
+  require_free(file);
+  if (*kind->arm != '\0') {
+    const std::string arm = kind->arm + std::string(".urdf");
+    require_free(folder / arm);
+    write_file(OutputFile(folder / arm), read_file(shipped_folder() / "scenarios/robots" / arm, "an arm"));
+    const std::string shipped = "../robots/" + arm;
+    text.replace(text.find(shipped), shipped.size(), arm);
   }
   write_file(OutputFile(file), text);
   print(fmt::format("{} is written. Next:\n\ncd {}\n{}\nEvery key: docs/scenario.md\n", file.string(), folder.string(),
@@ -59,6 +77,8 @@ constexpr const char* kInitExamples = R"(
 Examples:
   snug init cell my-cell
   snug init pallet my-pallet
+  snug init ur my-ur-cell
+  snug init gantry my-gantry
   snug init scene my-scene)";
 
 }  // namespace

@@ -10,6 +10,7 @@ struct InitKind {
   const char* name;
   const char* description;  ///< for --help
   const char* next;         ///< commands to run in the folder, one a line
+  const char* arm = "";     ///< name of its robot in scenarios/robots; empty: none
 };
 [[nodiscard]] std::span<const InitKind> init_kinds();
 
