@@ -17,6 +17,7 @@
 #include "snug/core/read_file.hpp"
 #include "snug/core/text.hpp"
 #include "snug/model/items_file.hpp"
+#include "snug/model/items_sheet.hpp"
 #include "snug/model/pose_edit.hpp"
 #include "snug/model/scenario.hpp"
 #include "snug/replay/cell_form.hpp"
@@ -39,6 +40,7 @@ constexpr std::chrono::milliseconds kBetweenFrames(30);     // at frames that ar
 constexpr std::chrono::milliseconds kListPatience(40);      // for reading logs that nobody has read
 constexpr std::size_t kMostFrames = std::size_t{2} << 20U;  // bytes of frames in one piece
 constexpr std::size_t kMostMoves = 100;
+constexpr std::size_t kMostMistakes = 20;  // of items, each read anew
 constexpr double kDegreesARadian = 180.0 / std::numbers::pi;
 constexpr std::size_t kLargestMove = kLargestUpload + (std::size_t{64} << 10U);
 /// A report has its scripts within it: it may run them, but has no address of its own, and reaches nothing.
@@ -88,6 +90,27 @@ Json as_json(const RunStatus& status) {
   return json;
 }
 
+/// One mistake of each line that has any, the first ones: the others are read without the lines before.
+Json mistakes_of_orders(std::string text, const std::string& name) {
+  Json mistakes = Json::array();
+  while (mistakes.size() < kMostMistakes) {
+    try {
+      (void)model::parse_orders_csv(text, name);
+      return mistakes;
+    } catch (const InputError& error) {
+      Json mistake = as_json(error);
+      if (mistake["line"].is_null() && !mistakes.empty()) return mistakes;  // nothing is left
+      const int line = mistake["line"].is_null() ? 0 : mistake["line"].get<int>();
+      mistakes.push_back(std::move(mistake));
+      if (line < 2) return mistakes;
+      std::size_t begin = 0;
+      for (int k = 1; k < line; ++k) begin = text.find('\n', begin) + 1;
+      text.erase(begin, std::min(text.find('\n', begin), text.size()) - begin);
+    }
+  }
+  return mistakes;
+}
+
 Json in_mm(const Vector3& size) { return {1e3 * size.x(), 1e3 * size.y(), 1e3 * size.z()}; }
 
 /// What a form shows of a text that can be used.
@@ -123,17 +146,17 @@ Json facts_of(FileKind kind, const std::string& text, const std::string& name) {
           {"cup_radius_mm", 1e3 * scenario.cup.lip_radius}};
 }
 
-/// Of a template; the robot's file is named where it lies, not beside the text.
-std::string text_of(const Template& one) {
+/// Of a template: its text, and its arm, which the text names as a file beside it.
+Json template_of(const Template& one) {
   std::string text = read_file(one.file, "a scenario to begin with");
-  constexpr std::string_view kRobot = "\n  urdf: robots/";
+  constexpr std::string_view kRobot = "\n  urdf: ";
   const std::size_t at = text.find(kRobot);
-  if (at == std::string::npos) return text;
-  const std::size_t begin = at + kRobot.find("robots/");
-  const std::size_t end = std::min(text.find_first_of(" \r\n#", begin), text.size());
-  const std::filesystem::path file =
-      std::filesystem::absolute(one.file).parent_path() / text.substr(begin, end - begin);
-  return text.replace(begin, end - begin, "\"" + file.string() + "\"");
+  if (at == std::string::npos) return {{"text", text}, {"arm", nullptr}};
+  const std::size_t begin = at + kRobot.size(), end = std::min(text.find_first_of(" \r\n#", begin), text.size());
+  const std::filesystem::path file = one.file.parent_path() / text.substr(begin, end - begin);
+  const std::string name = file.filename().string();
+  text.replace(begin, end - begin, name);
+  return {{"text", text}, {"arm", {{"name", name}, {"text", read_file(file, "an arm")}}}};
 }
 
 /// A member of an object; throws InputError for another type.
@@ -201,6 +224,7 @@ ApiAnswer Service::route(const ApiRequest& request) {
   if (parts.size() == 2 && what == "check" && is_post) return answer_check(name, request.body);
   if (parts.size() == 2 && what == "scene" && is_post) return answer_scene(name, request.body);
   if (parts.size() == 2 && what == "reach" && is_post) return answer_reach(name, request.body);
+  if (parts.size() == 2 && what == "sheet" && is_post) return answer_sheet(name, request.body);
   if (parts.size() == 2 && what == "move" && is_post) return answer_move(name, request.body);
   if (parts.size() == 1 && what == "catalogue" && is_get) {
     ApiAnswer answer;
@@ -212,7 +236,7 @@ ApiAnswer Service::route(const ApiRequest& request) {
   if (parts.size() == 3 && what == "runs") return answer_run(request, name, parts[2]);
   if (parts.size() == 2 && what == "templates" && is_get) {
     for (const Template& one : settings_.templates) {
-      if (one.name == name) return as_answer({{"text", text_of(one)}});
+      if (one.name == name) return as_answer(template_of(one));
     }
   }
   return refusal(404, "there is no such address: docs/ui.md lists them");
@@ -270,7 +294,9 @@ ApiAnswer Service::answer_check(const std::string& name, const std::string& text
     return as_answer({{"text", text}, {"mistake", nullptr}, {"facts", facts}});
   } catch (const InputError& error) {
     (void)kind_of_name(name);  // a wrong name is an error
-    return as_answer({{"text", text}, {"mistake", as_json(error)}, {"facts", nullptr}});
+    Json answer = {{"text", text}, {"mistake", as_json(error)}, {"facts", nullptr}};
+    if (kind_of_name(name) == FileKind::Items) answer["mistakes"] = mistakes_of_orders(text, name);
+    return as_answer(answer);
   }
 }
 
@@ -299,6 +325,41 @@ ApiAnswer Service::answer_reach(const std::string& name, const std::string& text
   ApiAnswer answer;
   answer.body = runs::format_json(runs::make_reach_map(read_cell(name, text), core_count()));
   return answer;
+}
+
+/// A table of boxes as people keep it, as orders; or what it leaves open.
+ApiAnswer Service::answer_sheet(const std::string& name, const std::string& body) const {
+  if (kind_of_name(name) != FileKind::Items) throw InputError("name", "", name, "a name that ends in .csv");
+  const Json json = parse_object(body, kLargestMove);
+  for (const auto& [key, value] : json.items())
+    if (key != "text" && key != "length" && key != "mass" && key != "decimal")
+      throw InputError("request", printable(key, 40), "", "text, length, mass or decimal");
+  const model::SheetAnswers answers{member(json, "length", std::string()), member(json, "mass", std::string()),
+                                    member(json, "decimal", std::string())};
+  const std::string text = member(json, "text", std::string());
+  if (text.size() > kLargestUpload) return refusal(413, "at most " + std::to_string(kLargestUpload) + " bytes");
+  const model::ItemsSheet sheet = model::read_items_sheet(text, name, answers);
+  std::vector<std::string> words = {"snug", "items", "read", name};
+  const auto add = [&](const char* option, const std::string& value) {
+    if (!value.empty()) words.insert(words.end(), {option, value});
+  };
+  add("--length-unit", answers.length);
+  add("--mass-unit", answers.mass);
+  add("--decimal", answers.decimal);
+  add("-o", "orders.csv");
+  Json columns = Json::array(), questions = Json::array();
+  for (const model::SheetColumn& one : sheet.columns)
+    columns.push_back({{"heading", one.heading}, {"column", one.column}});
+  for (const model::SheetQuestion& one : sheet.questions) {
+    Json choices = Json::array();
+    for (const auto& [answer, meaning] : one.choices)
+      choices.push_back({{"answer", answer}, {"meaning", printable(meaning, kLongestMessage)}});
+    questions.push_back({{"about", one.about}, {"choices", std::move(choices)}});
+  }
+  return as_answer({{"orders", sheet.orders},
+                    {"columns", std::move(columns)},
+                    {"questions", std::move(questions)},
+                    {"command", as_shell_line(words)}});
 }
 
 /// The text with parts of the cell moved; whether it can be used is another question.

@@ -95,7 +95,7 @@ export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void 
   function show(checked: Checked): void {
     const mistake = checked.mistake;
     verdict.className = mistake ? "verdict bad" : "verdict good";
-    verdict.textContent = mistake ? mistake.text : `This cell can be used. Its own orders: ${checked.facts!.sequences.slice(0, 12).join(", ") || "none"}`;
+    verdict.textContent = mistake ? mistake.text : `This cell can be used. Its own orders: ${(checked.facts!.sequences ?? []).slice(0, 12).join(", ") || "none"}`;
     goTo.hidden = !mistake?.line;
     goTo.textContent = `Show line ${mistake?.line ?? ""}`;
     goTo.onclick = () => goToLine(mistake!.line!);
@@ -195,6 +195,13 @@ export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void 
   async function begin(): Promise<void> {
     const found = await shell.attempt(() => api.template(template.value));
     if (!found) return;
+    const { arm } = found;
+    const known = arm && shell.folder.arms.find((one) => one.name === arm.name);
+    if (known && known.bytes !== new Blob([arm.text]).size) return shell.tell(`The folder has another ${arm.name}: give it another name, or remove it.`, true);
+    if (arm && !known) {
+      if (!(await shell.attempt(() => api.write(arm.name, arm.text)))) return;
+      await shell.refresh();
+    }
     name.value = template.value;
     isOther = true;
     text.value = found.text;

@@ -4,6 +4,7 @@
 import { api, isGoingOn, type Decision, type Decisions, type RunStatus } from "./api";
 import { action, field, make, scrollable, setChoices, table } from "./dom";
 import { drawPlan } from "./plan_drawing";
+import { PlanStage } from "./plan_stage";
 import type { Shell } from "./shell";
 
 /** An id as a word of `snug pack --operator`. */
@@ -36,6 +37,7 @@ export class DecisionView {
   readonly element = make("section", "decisions");
   private readonly which_ = make("select");
   private readonly place_ = make("div");
+  private readonly stage_ = new PlanStage();
   /** What may be said to a run that goes on: beside its Stop. */
   readonly operator = make("fieldset", "operator");
   private readonly takeOut_ = make("select");
@@ -57,7 +59,7 @@ export class DecisionView {
     this.said_.setAttribute("role", "status");
     this.operator.hidden = true;
     this.element.append(make("h2", "", "Decisions"),
-      make("div", "bar", action("Previous decision", step(-1)), field("Decision", this.which_), action("Next decision", step(1))), this.place_);
+      make("div", "bar", action("Previous decision", step(-1)), field("Decision", this.which_), action("Next decision", step(1))), this.stage_.element, this.place_);
     this.element.hidden = true;
   }
 
@@ -148,6 +150,9 @@ export class DecisionView {
     const one = this.shown_?.decisions[this.which_.selectedIndex];
     if (!one) return this.place_.replaceChildren(make("p", "", "Nothing was decided yet."));
     const run = this.run_!;
+    // Another program's cell leaves no recording here: it is drawn as it is believed to be.
+    if (/ --plant /.test(run.command)) this.stage_.show(this.sizeOf_, this.shown_!, this.which_.selectedIndex).catch(() => this.stage_.hide());
+    else this.stage_.hide();
     const isHeld = isGoingOn(run) && run.held === one.item;
     const rows = one.candidates.map((candidate, k) => [
       String(k + 1), at(candidate.position_mm), TRIED.includes(candidate.verdict) ? candidate.insertion : "–", number(candidate.expected_percent, 1), number(candidate.cost, 1), number(candidate.utility, 1),

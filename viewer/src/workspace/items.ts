@@ -1,6 +1,9 @@
-// Items: orders of boxes from a CSV: chosen, dropped or typed; mistakes marked where they are; boxes drawn to scale.
+// Items: orders of boxes from a sheet: chosen, dropped or typed; units asked for where they are unclear; mistakes marked where
+// they are; boxes drawn to scale.
 
-import { api, Refused, type Checked, type ItemLine } from "./api";
+import { api, Refused, type ItemLine, type Mistake, type SheetAnswers } from "./api";
+import { choiceOf } from "./ask";
+import { BookError, csvOfBook } from "./book";
 import { action, field, later, make, numberInput, plainName, scrollable, setChoices, textInput } from "./dom";
 import type { Shell } from "./shell";
 import { drawSpreads, typicalOrders } from "./typical";
@@ -9,7 +12,11 @@ const EXAMPLE = `order,article,length_mm,width_mm,height_mm,mass_kg,count
 mine,coffee,200,150,100,0.5,1
 mine,tea,180,120,90,0.4,2
 `;
-const LARGEST = 4 * 1024 * 1024; // bytes, as the program takes
+const LARGEST = 4 * 1024 * 1024; // bytes of text, as the program takes
+const LARGEST_FILE = 8 * 1024 * 1024; // of a workbook
+const ABOUT: Record<string, string> = {
+  length: "In which unit are the lengths of this sheet?", mass: "In which unit are the masses of this sheet?", decimal: "What does the comma in this sheet's numbers stand before?",
+};
 const MOST_ROWS = 500; // shown; all are read
 const MOST_DRAWN = 60;
 
@@ -41,10 +48,17 @@ function drawBox(line: ItemLine, scale: number): SVGSVGElement {
   return svg;
 }
 
+/** The fields of a line: commas within quotes are part of them. */
+export function fieldsOf(line: string): string[] {
+  const fields: string[] = [];
+  for (const found of `,${line}`.matchAll(/,\s*(?:"((?:[^"]|"")*)"|([^,]*))/g)) fields.push((found[1]?.replace(/""/g, '"') ?? found[2] ?? "").trim());
+  return fields;
+}
+
 export function makeItems(shell: Shell): { element: HTMLElement; refresh(): void } {
   const file = make("input");
   file.type = "file";
-  file.accept = ".csv,text/csv";
+  file.accept = ".csv,.tsv,.txt,.xlsx,.ods,text/csv";
   const saved = make("select");
   const name = textInput("items");
   const text = make("textarea", "source");
@@ -53,6 +67,10 @@ export function makeItems(shell: Shell): { element: HTMLElement; refresh(): void
   text.wrap = "off";
   const verdict = make("p", "verdict");
   verdict.setAttribute("role", "status");
+  const recognise = action("Recognise the columns", () => takeSheet(text.value));
+  recognise.hidden = true;
+  const read = make("p", "hint"); // how the sheet was read
+  read.setAttribute("role", "status");
   const rows = scrollable(make("div", "scroll"));
   const boxes = make("div", "boxes");
   const spreads = make("div", "spreads");
@@ -60,17 +78,19 @@ export function makeItems(shell: Shell): { element: HTMLElement; refresh(): void
 
   const fileName = (): string => `${name.value.trim()}.csv`;
 
-  function showRows(mistake: Checked["mistake"]): void {
+  function showRows(mistakes: Mistake[]): void {
     const lines = text.value.split(/\r?\n/);
     const table = make("table", "rows");
+    const header = fieldsOf(lines[0] ?? "");
     let shown = 0;
     lines.forEach((line, k) => {
       if (line.trim() === "") return;
-      const isBad = mistake?.line === k + 1;
-      if (++shown > MOST_ROWS && !isBad) return;
-      const row = make("tr", isBad ? "bad" : "", make("th", "", String(k + 1)));
-      for (const cell of line.split(",")) row.append(make(shown === 1 ? "th" : "td", "", cell.trim()));
-      if (isBad) row.append(make("td", "why", mistake.text));
+      const mistake = mistakes.find((one) => one.line === k + 1);
+      if (++shown > MOST_ROWS && !mistake) return;
+      const row = make("tr", mistake ? "bad" : "", make("th", "", String(k + 1)));
+      const wrong = mistake ? header.indexOf(mistake.key) : -1;
+      fieldsOf(line).forEach((word, i) => row.append(make(shown === 1 ? "th" : "td", i === wrong ? "wrong" : "", word)));
+      if (mistake) row.append(make("td", "why", mistake.text));
       table.append(row);
     });
     rows.replaceChildren(table);
@@ -87,9 +107,10 @@ export function makeItems(shell: Shell): { element: HTMLElement; refresh(): void
 
   async function check(): Promise<void> {
     if (text.value.trim() === "") {
-      verdict.textContent = "Choose a CSV, drop one here, or begin with the example.";
+      verdict.textContent = "Choose a sheet, drop one here, or begin with the example.";
       verdict.className = "verdict";
       rows.replaceChildren();
+      recognise.hidden = true;
       boxes.replaceChildren();
       spreads.replaceChildren();
       return;
@@ -98,23 +119,56 @@ export function makeItems(shell: Shell): { element: HTMLElement; refresh(): void
       const asked = text.value;
       const checked = await api.check(fileName(), asked);
       if (asked !== text.value) return; // another check is under way
-      showRows(checked.mistake);
+      showRows(checked.mistakes ?? []);
+      recognise.hidden = !(checked.mistake && checked.mistake.line === 1);
       showBoxes(checked.facts?.lines ?? []);
       const count = (checked.facts?.lines ?? []).reduce((sum, line) => sum + line.count, 0);
       verdict.className = checked.mistake ? "verdict bad" : "verdict good";
-      verdict.textContent = checked.mistake ? checked.mistake.text : `${count} boxes; orders: ${checked.facts!.sequences.slice(0, 8).join(", ")}`;
+      verdict.textContent = checked.mistake ? `${(checked.mistakes?.length ?? 1) > 1 ? `${checked.mistakes!.length} lines with mistakes. ` : ""}${checked.mistake.text}` : `${count} boxes; orders: ${(checked.facts!.sequences ?? []).slice(0, 8).join(", ")}`;
     } catch (error) {
       verdict.className = "verdict bad";
       verdict.textContent = shell.say(error);
     }
   }
 
+  /** A sheet as people keep it becomes orders; what it does not say is asked. */
+  async function takeSheet(chosen: string): Promise<void> {
+    const answers: SheetAnswers = {};
+    text.value = chosen;
+    const sheet = text.value; // its ends of lines are those of the page now
+    read.textContent = "";
+    for (;;) {
+      const found = await shell.attempt(() => api.sheet(fileName(), sheet, answers));
+      if (!found || text.value !== sheet) break;
+      const open = found.questions[0];
+      if (!open) {
+        text.value = found.orders;
+        const taken = found.columns.filter(({ heading, column }) => column !== "" && column !== heading).map(({ heading, column }) => `${heading} as ${column}`);
+        const left = found.columns.filter(({ column }) => column === "").map(({ heading }) => heading);
+        if (found.orders !== sheet) read.textContent = `Read ${taken.join(", ")}${left.length > 0 ? `; passed over ${left.join(", ")}` : ""}. As a command for a CSV: ${found.command}`;
+        break;
+      }
+      const said = await choiceOf(ABOUT[open.about] ?? open.about, open.choices.map(({ answer, meaning }): [string, string] => [answer, `${answer}: ${open.about === "decimal" ? "" : "the first box is "}${meaning}`]));
+      if (said === null) break;
+      answers[open.about as keyof SheetAnswers] = said;
+    }
+    await check();
+  }
+
   async function take(from: File | undefined): Promise<void> {
     if (!from) return;
-    if (from.size > LARGEST) return void (verdict.textContent = `${from.name} has ${from.size} bytes; at most ${LARGEST} can be taken.`);
-    name.value = plainName(from.name, "items");
-    text.value = await from.text();
-    await check();
+    const isBook = /\.(xlsx|ods)$/i.test(from.name);
+    const most = isBook ? LARGEST_FILE : LARGEST;
+    if (from.size > most) return shell.tell(`${from.name} has ${from.size} bytes; at most ${most} can be taken.`, true);
+    shell.tell("");
+    try {
+      const sheet = isBook ? csvOfBook(new Uint8Array(await from.arrayBuffer())) : await from.text();
+      name.value = plainName(from.name, "items");
+      await takeSheet(sheet);
+    } catch (error) {
+      shell.tell(error instanceof BookError ? `${from.name} cannot be read. ${error.message}` : shell.say(error), true);
+    }
+    file.value = ""; // the same file can be chosen again
   }
 
   async function open(): Promise<void> {
@@ -144,7 +198,7 @@ export function makeItems(shell: Shell): { element: HTMLElement; refresh(): void
   name.addEventListener("input", later(250, () => void check()));
   const element = make("section", "page",
     make("div", "bar",
-      field("Choose a CSV", file),
+      field("Choose a sheet (CSV, XLSX, ODS)", file),
       field("Open items of the folder", saved),
       action("Use the example", () => {
         name.value = "items";
@@ -159,8 +213,8 @@ export function makeItems(shell: Shell): { element: HTMLElement; refresh(): void
         text.value = typicalOrders({ orders: orders.valueAsNumber, boxes: perOrder.valueAsNumber, seed: drawn.valueAsNumber });
         return check();
       })),
-    make("div", "bar", field("Name of the items", name), action("Save items", save, "main")),
-    verdict, rows, spreads, boxes, field("Text of the items", text, "wide"));
+    make("div", "bar", field("Name of the items", name), action("Save items", save, "main"), recognise),
+    verdict, read, rows, spreads, boxes, field("Text of the items", text, "wide"));
   element.addEventListener("dragover", (event) => event.preventDefault());
   element.addEventListener("drop", (event) => {
     event.preventDefault();

@@ -23,6 +23,14 @@ export const REACH_COLOURS = ["#1f9d55", "#8a9299", "#e69f00", "#7a3fb0", "#cc79
 const HANDLE = 0.06; // m, half of what stands for a part without a shape
 const WIDE = 3; // m: a ground is no part that is pointed at
 
+/** A box over the cell, mm in W. */
+export interface DrawnBox {
+  centre: [number, number, number];
+  extent: [number, number, number];
+  yaw_deg: number;
+  isPlanned: boolean; // lines; else solid
+}
+
 interface Handle {
   part: CellPart;
   box: Box3; // in W
@@ -68,26 +76,27 @@ export class Stage {
   private readonly outline_: LineSegments<EdgesGeometry, LineBasicMaterial>;
   private readonly wrong_ = new Group();
   private readonly reach_ = new Group();
+  private readonly boxes_ = new Group();
   private drawn_ = new Group();
   private cameras_: Cameras | null = null;
   private handles_: Handle[] = [];
   private isScheduled_ = false;
   private drag_: { handle: Handle; from: Vector3; plane: Plane; isUp: boolean; place: Place; pointer: number } | null = null;
 
-  constructor() {
+  constructor(label = "The cell in 3D: arrow keys move the chosen part, Page Up and Page Down lift it, brackets turn it") {
     this.palette_ = PALETTES[matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light"];
     this.renderer_ = new WebGLRenderer({ antialias: !isSoftwareRenderer() });
     this.canvas = this.renderer_.domElement;
     this.canvas.tabIndex = 0;
     this.canvas.setAttribute("role", "application");
-    this.canvas.setAttribute("aria-label", "The cell in 3D: arrow keys move the chosen part, Page Up and Page Down lift it, brackets turn it");
+    this.canvas.setAttribute("aria-label", label);
     this.element.append(this.canvas);
     this.scene_.background = new Color(this.palette_.background);
     setLight(this.palette_);
     this.outline_ = new LineSegments(new EdgesGeometry(new BoxGeometry(1, 1, 1)), new LineBasicMaterial({ color: this.palette_.select, depthTest: false, transparent: true }));
     this.outline_.renderOrder = 10;
     this.outline_.visible = false;
-    this.scene_.add(this.drawn_, this.reach_, this.outline_, this.wrong_);
+    this.scene_.add(this.drawn_, this.reach_, this.boxes_, this.outline_, this.wrong_);
     this.listen();
     new ResizeObserver(() => this.resize()).observe(this.element);
   }
@@ -153,6 +162,24 @@ export class Stage {
       lines.matrix.copy(isMoved ? this.outline_.matrix : this.boxMatrix(box));
       lines.renderOrder = 11;
       this.wrong_.add(lines);
+    }
+    this.invalidate();
+  }
+
+  /** In the place of those before. */
+  showBoxes(boxes: DrawnBox[]): void {
+    disposeOf(this.boxes_);
+    this.boxes_.clear();
+    for (const { centre, extent, yaw_deg, isPlanned } of boxes) {
+      const shape = new BoxGeometry(...extent.map((edge) => edge * 1e-3));
+      const lines = new LineSegments(new EdgesGeometry(shape), new LineBasicMaterial({ color: isPlanned ? this.palette_.select : 0x7a5a2e, depthTest: !isPlanned, transparent: isPlanned }));
+      const drawn = new Group();
+      drawn.add(lines);
+      if (isPlanned) shape.dispose();
+      else drawn.add(new Mesh(shape, new MeshBasicMaterial({ color: 0xd9b483, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 })));
+      drawn.position.set(...centre).multiplyScalar(1e-3);
+      drawn.rotation.z = (yaw_deg * Math.PI) / 180;
+      this.boxes_.add(drawn);
     }
     this.invalidate();
   }

@@ -4,12 +4,33 @@ import type { ChildProcess } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { strToU8, zipSync } from "fflate";
 import type { Browser, Page } from "playwright-core";
 import { afterAll, afterEach, beforeAll, describe, expect, it } from "vitest";
 import { openBrowser } from "../support/browser";
 import { serveWith } from "../support/program";
 
 const ORDERS = "order,article,length_mm,width_mm,height_mm,mass_kg\nmine,<img src=x onerror=alert(1)>,180,120,90,0.4\nmine,B,150,120,90,0.3\n";
+
+/** A workbook as spreadsheet programs write it: packed, words in a list of their own. */
+function xlsx(rows: (string | number)[][]): Uint8Array {
+  const words = rows.flat().filter((cell): cell is string => typeof cell === "string");
+  const text = (word: string): string => word.replace(/&/g, "&amp;").replace(/</g, "&lt;");
+  const main = 'xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"', office = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
+  const sheet = rows.map((row, r) => `<row r="${r + 1}">${row.map((cell, k) => `<c r="${String.fromCharCode(65 + k)}${r + 1}"${typeof cell === "string" ? ` t="s"><v>${words.indexOf(cell)}` : `><v>${cell}`}</v></c>`).join("")}</row>`).join("");
+  return zipSync({
+    "xl/workbook.xml": strToU8(`<workbook ${main} xmlns:r="${office}"><sheets><sheet name="x" sheetId="1" state="hidden" r:id="rId9"/><sheet name="Orders" sheetId="2" r:id="rId3"/></sheets></workbook>`),
+    "xl/_rels/workbook.xml.rels": strToU8('<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="rId3" Target="worksheets/sheet2.xml"/></Relationships>'),
+    "xl/sharedStrings.xml": strToU8(`<sst ${main}>${words.map((word) => `<si><r><t>${text(word.slice(0, 2))}</t></r><r><t xml:space="preserve">${text(word.slice(2))}</t></r></si>`).join("")}</sst>`),
+    "xl/worksheets/sheet2.xml": strToU8(`<worksheet ${main}><sheetData>${sheet}</sheetData></worksheet>`),
+  });
+}
+
+function ods(rows: (string | number)[][]): Uint8Array {
+  const cells = rows.map((row) => `<t:table-row>${row.map((cell) => (typeof cell === "number" ? `<t:table-cell o:value-type="float" o:value="${cell}"><x:p>${cell}</x:p></t:table-cell>` : `<t:table-cell o:value-type="string"><x:p>${cell}</x:p></t:table-cell>`)).join("")}</t:table-row>`).join("");
+  const urn = "urn:oasis:names:tc:opendocument:xmlns";
+  return zipSync({ "content.xml": strToU8(`<o:document-content xmlns:o="${urn}:office:1.0" xmlns:t="${urn}:table:1.0" xmlns:x="${urn}:text:1.0"><o:body><o:spreadsheet><t:table>${cells}<t:table-row t:number-rows-repeated="1048000"><t:table-cell t:number-columns-repeated="16384"/></t:table-row></t:table></o:spreadsheet></o:body></o:document-content>`) });
+}
 
 let browser: Browser;
 let folder = "";
@@ -72,7 +93,7 @@ describe("the page of snug ui", () => {
     const shows = (text: string | RegExp): Promise<void> => page.getByText(text).first().waitFor();
 
     ++actions;
-    await page.getByLabel("Choose a CSV").setInputFiles({ name: "my orders (1).csv", mimeType: "text/csv", buffer: Buffer.from(ORDERS.replace("180", "18x")) });
+    await page.getByLabel("Choose a sheet (CSV, XLSX, ODS)").setInputFiles({ name: "my orders (1).csv", mimeType: "text/csv", buffer: Buffer.from(ORDERS.replace("180", "18x")) });
     await shows(/length_mm/);
     expect(await page.locator("tr.bad").innerText()).toContain("18x");
     ++actions;
@@ -116,6 +137,12 @@ describe("the page of snug ui", () => {
     const [book] = await Promise.all([page.waitForEvent("download"), click("button", "Download workbook (.xlsx)")]);
     expect(readFileSync((await book.path())!).subarray(0, 4).toString("latin1")).toBe("PK\x03\x04");
     await click("tab", "Take away");
+    for (const [button, words] of [["Make a picture", /The picture of run-1 is in the folder/], ["Make a GLB", /The GLB of run-1 is in the folder/]] as const) {
+      await click("button", button);
+      await shows(words);
+    }
+    expect(readFileSync(join(folder, "run-1.png")).subarray(1, 4).toString("latin1")).toBe("PNG");
+    expect(readFileSync(join(folder, "run-1.glb")).subarray(0, 4).toString("latin1")).toBe("glTF");
     // Asked without drawing it, which takes seconds without a graphics card: scripts, but no address of its own.
     const path = await page.getByRole("link", { name: "Open the report" }).getAttribute("href");
     const report = await askKnown(path!);
@@ -132,6 +159,37 @@ describe("the page of snug ui", () => {
     await picture(page, "workspace-390");
     await page.reload();
     await shows("2 of 2 packed, ");
+    expect(errors).toEqual([]);
+    await page.context().close();
+  });
+
+  it("takes workbooks as people keep them, and asks for units that they do not say", async () => {
+    const page = await openPage();
+    const choose = (name: string, bytes: Uint8Array): Promise<void> =>
+      page.getByLabel("Choose a sheet (CSV, XLSX, ODS)").setInputFiles({ name, mimeType: "application/octet-stream", buffer: Buffer.from(bytes) });
+    const orders = page.getByLabel("Text of the items");
+    await choose("Bestellung.xlsx", xlsx([["Artikel", "Länge", "Breite", "Höhe", "Gewicht", "Anzahl"], ["Kaffee; <b>", 20, 15, 10.5, 500, 2], ["Tee", "18,5", 12, 9, 400, 1]]));
+    await page.getByRole("dialog", { name: "In which unit are the lengths of this sheet?" }).waitFor();
+    await picture(page, "workspace-question");
+    await page.getByRole("button", { name: "cm: the first box is 200 x 150 x 105 mm" }).click();
+    await page.getByRole("button", { name: "g: the first box is 0.5 kg" }).click();
+    await page.getByText("3 boxes; orders: Bestellung").waitFor();
+    expect(await orders.inputValue()).toBe("article,length_mm,width_mm,height_mm,mass_kg,count\nKaffee; <b>,200,150,105,0.5,2\nTee,185,120,90,0.4,1\n");
+    await page.getByText(/snug items read Bestellung.csv --length-unit cm --mass-unit g/).waitFor();
+    await choose("plan.ods", ods([["sku", "size in mm", "weight in kg"], ["A", "200 x 150 x 100", 0.5]]));
+    await page.getByText("1 boxes; orders: plan").waitFor();
+    await choose("two.csv", Buffer.from("length_mm,width_mm,height_mm,mass_kg\n1x,1,1,1\n10,10,10,1\n10,10,10,-1\n"));
+    await page.getByText(/^2 lines with mistakes/).waitFor();
+    expect(await page.locator("tr.bad td.wrong").allInnerTexts()).toEqual(["1x", "-1"]);
+    const bomb = zipSync({ "xl/workbook.xml": new Uint8Array(40 << 20) });
+    expect(bomb.length).toBeLessThan(100_000);
+    new DataView(bomb.buffer).setUint32(22, 10, true); // it says that it is small
+    await choose("bomb.xlsx", bomb);
+    await page.getByText(/bomb.xlsx cannot be read. It unpacks to more than/).waitFor();
+    await choose("entities.xlsx", zipSync({ "xl/workbook.xml": strToU8('<!DOCTYPE a [<!ENTITY b "bbb">]><workbook>&b;</workbook>') }));
+    await page.getByText(/entities.xlsx cannot be read. It has definitions of its own/).waitFor();
+    await choose("torn.xlsx", xlsx([["a"]]).subarray(0, 300));
+    await page.getByText(/torn.xlsx cannot be read/).waitFor();
     expect(errors).toEqual([]);
     await page.context().close();
   });

@@ -186,6 +186,48 @@ describe("the cell of snug ui", () => {
   }, PATIENCE);
 });
 
+describe("templates", () => {
+  it("are a UR cell and a gantry, too, whose arms lie in the folder and reach their picks", async () => {
+    const page = await openPage();
+    for (const [template, arm] of [["ur", "ur5e.urdf"], ["gantry", "gantry.urdf"]] as const) {
+      await begin(page, template);
+      await page.getByText(/All \d+ places of pick are reached/).waitFor();
+      expect(await text(page)).toContain(`  urdf: ${arm}\n`);
+      expect(readFileSync(join(folder, arm), "utf8")).toBe(readFileSync(join(repository, "scenarios/robots", arm), "utf8"));
+      await picture(page, `workspace-template-${template}`);
+    }
+    rmSync(join(folder, "gantry.urdf")); // another one is dropped below
+    expect(errors).toEqual([]);
+    await page.context().close();
+  }, PATIENCE);
+});
+
+describe("a served cell", () => {
+  it("is packed, and drawn with its boxes where they are perceived", async () => {
+    const page = await openPage();
+    await begin(page, "ur");
+    await page.getByRole("button", { name: "Save cell" }).click();
+    await page.getByText("ur.yaml is saved.").waitFor();
+    const { child: served } = await serveWith("serve", join(folder, "ur.yaml"), "--items", join(folder, "mine.csv"), "--sequence", "mine", "--plant-seed", "1", "--click", `ipc://${folder}/cell`);
+    await page.getByRole("tab", { name: "Run" }).click();
+    await page.getByRole("combobox", { name: "Cell", exact: true }).selectOption("ur.yaml");
+    await page.getByRole("combobox", { name: "Items", exact: true }).selectOption("mine.csv");
+    await page.getByLabel("What is packed").selectOption("click");
+    await page.getByLabel("Address").fill(`click+ipc://${folder}/cell`);
+    await page.getByLabel("Name of the run").fill("served");
+    await page.getByText(/snug pack ur.yaml --items mine.csv --sequence mine --plant 'click/).waitFor();
+    await page.getByRole("button", { name: "Start", exact: true }).click();
+    await page.locator(".plan-stage canvas").waitFor();
+    await page.getByText(/2 of 2 packed/).first().waitFor();
+    await page.getByText("Solid: as perceived.").waitFor();
+    expect(await page.locator(".plan svg").count()).toBe(2);
+    await picture(page, "workspace-served");
+    served.kill("SIGINT");
+    expect(errors).toEqual([]);
+    await page.context().close();
+  }, PATIENCE);
+});
+
 describe("parts of the trade", () => {
   it("are a container and a cup by their names, and an arm that is dropped with its meshes", async () => {
     const page = await openPage();
@@ -203,7 +245,7 @@ describe("parts of the trade", () => {
     await page.getByText("gantry.urdf is the arm of this cell; tool0 carries the tool.").waitFor();
     await page.getByText(/reached: \d+ of \d+/).first().waitFor();
     expect(await text(page)).toContain("  urdf: gantry.urdf\n");
-    expect(readdirSync(folder).filter((name) => /urdf|stl/.test(name))).toEqual(["gantry.urdf", "mast.stl"]);
+    expect(readdirSync(folder).filter((name) => /gantry|mast/.test(name))).toEqual(["gantry.urdf", "mast.stl"]);
     expect(readFileSync(join(folder, "gantry.urdf"), "utf8")).not.toContain("/etc/");
     await picture(page, "workspace-parts");
     expect(errors.filter((text) => !/422/.test(text))).toEqual([]);

@@ -6,6 +6,7 @@ import { describe, expect, it } from "vitest";
 import type { ReachMap, RunStatus } from "../../src/workspace/api";
 import { csvOf } from "../../src/workspace/compare";
 import { plainName } from "../../src/workspace/dom";
+import { fieldsOf } from "../../src/workspace/items";
 import { moved, namesIn, snapped } from "../../src/workspace/placing";
 import { nextTime } from "../../src/workspace/pace";
 import { countLayer } from "../../src/workspace/reach_count";
@@ -94,5 +95,12 @@ describe("names and tables", () => {
     expect(csv.split("\r\n")[0]).toBe(",'=1+1");
     expect(csv).toContain(`Order,"'@a,""b"""\r\nPlant,'-x`);
     expect(csv).toContain("Boxes an hour,720");
+  });
+});
+
+describe("lines of items", () => {
+  it("are taken apart at commas outside of quotes", () => {
+    expect(fieldsOf(',a,"b, ""c""", d ,')).toEqual(["", "a", 'b, "c"', "d", ""]);
+    expect(fieldsOf("")).toEqual([""]);
   });
 });

@@ -1,11 +1,12 @@
 // What the page of `snug ui` computes itself: costs, workbooks, typical orders, orders of who operates, dropped files.
 
 import { describe, expect, it } from "vitest";
-import type { Decision, RunStatus } from "../../src/workspace/api";
+import type { CellPart, Decision, Decisions, RunStatus } from "../../src/workspace/api";
 import { costOfABox, csvOf, describeSpread, NO_COSTS, pageOf, spreadsOf, worstOf } from "../../src/workspace/compare";
 import { outcomeRows, quoted } from "../../src/workspace/decisions";
 import { splitDropped } from "../../src/workspace/parts";
 import { boxesOf } from "../../src/workspace/plan_drawing";
+import { boxesInWorld, inWorld } from "../../src/workspace/plan_stage";
 import { crc32, workbook, zip } from "../../src/workspace/spreadsheet";
 import { histogram, typicalOrders } from "../../src/workspace/typical";
 
@@ -85,7 +86,7 @@ describe("who operates", () => {
 });
 
 const decision = (item: string, more: Partial<Decision> = {}): Decision => ({
-  item, time: 0, outcome: "found", reason: "", planning_seconds: 0, candidates: [], candidates_in_all: 0, extent_mm: [100, 100, 50],
+  item, time: 0, outcome: "found", reason: "", planning_seconds: 0, candidates: [], candidates_in_all: 0, waited_seconds: 0, extent_mm: [100, 100, 50],
   planned: { position_mm: [0, 0, 25], insertion: "top-down", reorientation: "none", predicted_success: 0.9, samples: 8 }, happened: null, end: "placed", end_reason: "", troubles: [], operator: [], ...more });
 
 describe("decisions", () => {
@@ -106,5 +107,17 @@ describe("dropped files", () => {
     expect(splitDropped(of("a.urdf", "b.urdf")).trouble).toMatch(/one arm/);
     expect(splitDropped([{ name: "a.urdf", size: 5 << 20 }]).trouble).toMatch(/at most/);
     expect(splitDropped([]).trouble).toMatch(/No URDF/);
+  });
+});
+
+describe("a served cell in 3D", () => {
+  const container: CellPart = { key: "containers.tote", name: "tote", position_mm: [500, 100, 20], yaw_deg: 90 };
+  it("has boxes where they are perceived, and the one at hand where it is planned, in W", () => {
+    const found = { items: [], now: "", held: "", standing: [{ item: "A", position_mm: [450, 90, 40], extent_mm: [100, 50, 40] }], decisions: [decision("B")] } satisfies Decisions;
+    const [perceived, planned] = boxesInWorld(found, 0, container);
+    expect(perceived).toEqual({ centre: [450, 90, 40], extent: [100, 50, 40], yaw_deg: 0, isPlanned: false });
+    expect(planned).toMatchObject({ extent: [100, 100, 50], yaw_deg: 90, isPlanned: true });
+    inWorld(container, [10, 20, 25]).forEach((x, i) => expect(x).toBeCloseTo([480, 110, 45][i]!, 9));
+    expect(boxesInWorld({ ...found, decisions: [] }, 0, container)).toHaveLength(1);
   });
 });

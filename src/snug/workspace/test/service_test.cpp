@@ -4,12 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "snug/core/read_file.hpp"
 #include "snug/core/rng.hpp"
 #include "snug/core/test/scratch_folder.hpp"
+#include "snug/workspace/api_forms.hpp"
 
 namespace snug::workspace {
 namespace {
@@ -38,7 +40,30 @@ class ServiceTest : public ::testing::Test {
                           int status = 200) {
     const serve::ApiAnswer answer = ask(method, path, body);
     EXPECT_EQ(answer.status, status) << path << ": " << answer.body;
+    if (const std::string form = form_of(method, path, answer.status); !form.empty()) {
+      EXPECT_EQ(find_deviation(nlohmann::ordered_json::parse(answer.body), form), "") << method << " " << path;
+    }
     return Json::parse(answer.body);
+  }
+  /// The form of an answer (api_forms.hpp); empty: it is none of the page's.
+  [[nodiscard]] static std::string form_of(const std::string& method, const std::string& path, int status) {
+    static const std::map<std::string, std::string> kForms = {
+        {"folder", "FolderList"}, {"templates", "TemplateText"}, {"facts", "Checked"},
+        {"check", "Checked"},     {"sheet", "SheetRead"},        {"scene", "CellScene"},
+        {"reach", "ReachMap"},    {"move", "EditedText"},        {"cup", "EditedText"},
+        {"arm", "EditedText"},    {"catalogue", "Catalogue"},    {"commands", "RunCommands"}};
+    if (status >= 400) return "Refusal";
+    const std::string what = path.substr(0, path.find('/'));
+    if (what == "files") return method == "PUT" ? "Written" : "";
+    if (what == "runs") {
+      if (path == "runs") return "RunCommands";
+      if (path.ends_with("/decisions")) return "Decisions";
+      if (path.ends_with("/operator")) return "Said";
+      if (path.ends_with("/make")) return "Made";
+      return method == "GET" && path.find('/', 5) == std::string::npos ? "RunStatus" : "";
+    }
+    const auto found = kForms.find(what);
+    return found == kForms.end() ? "" : found->second;
   }
 
   test::ScratchFolder scratch_;
@@ -129,13 +154,33 @@ TEST_F(ServiceTest, MovesPartsInTheTextAndShowsThem) {
 TEST_F(ServiceTest, ShowsWhatTheDemonstratorReaches) {
   const fs::path file = fs::path(SNUG_SOURCE_DIR) / "scenarios/box-demonstrator.yaml";
   Service service({cells_, "/bin/true", "1.0", {{"demonstrator", "a cell", file}}, 1});
-  const std::string text = Json::parse(service.answer({"GET", "/api/1/templates/demonstrator", ""}).body)["text"];
+  const Json begun = Json::parse(service.answer({"GET", "/api/1/templates/demonstrator", ""}).body);
+  const std::string text = begun["text"];
+  EXPECT_NE(text.find("\n  urdf: ur10.urdf\n"), std::string::npos);  // beside it, wherever the folder goes
+  EXPECT_EQ(service.answer({"POST", "/api/1/reach/a.yaml", text}).status, 422);
+  ASSERT_EQ(begun["arm"]["name"], "ur10.urdf");
+  ASSERT_EQ(service.answer({"PUT", "/api/1/files/ur10.urdf", begun["arm"]["text"]}).status, 200);
   const serve::ApiAnswer answer = service.answer({"POST", "/api/1/reach/a.yaml", text});
   ASSERT_EQ(answer.status, 200) << answer.body;
   const Json map = Json::parse(answer.body);
   EXPECT_EQ(map["layers"].size(), 4U);
   EXPECT_EQ(map["layers"][0]["verdicts"].size(), 384U);
   EXPECT_GT(map["counts"]["reached"], 1000);
+}
+
+TEST_F(ServiceTest, ReadsSheetsAndAsksForUnits) {
+  const std::string text = "Sku;Length;Width;Height;kg weight\nA;20,5;15;10;0,5\n";
+  const Json open = json("POST", "sheet/a.csv", Json{{"text", text}}.dump());
+  EXPECT_EQ(open["orders"], "");
+  EXPECT_EQ(open["questions"][0]["about"], "length");
+  EXPECT_EQ(open["questions"][0]["choices"][1]["meaning"], "205 x 150 x 100 mm");
+  const Json said = json("POST", "sheet/a.csv", Json{{"text", text}, {"length", "cm"}}.dump());
+  EXPECT_EQ(said["orders"], "article,length_mm,width_mm,height_mm,mass_kg\nA,205,150,100,0.5\n");
+  EXPECT_EQ(said["command"], "snug items read a.csv --length-unit cm -o orders.csv");
+  EXPECT_EQ(said["columns"][4]["column"], "mass_kg");
+  for (const Json& wrong : {Json{{"text", text}, {"length", "furlong"}}, Json{{"text", 7}}, Json{{"other", text}}})
+    EXPECT_EQ(ask("POST", "sheet/a.csv", wrong.dump()).status, 422);
+  EXPECT_EQ(ask("POST", "sheet/a.yaml", "{}").status, 422);
 }
 
 TEST_F(ServiceTest, StreamsFramesThatAreWhole) {
@@ -191,11 +236,11 @@ TEST_F(ServiceTest, RefusesDeepRequests) {
 TEST_F(ServiceTest, AnswersRandomRequestsWithoutLeavingTheFolder) {
   (void)json("PUT", "files/a.yaml", cell_);
   Rng rng(11);
-  const std::vector<std::string> words = {"files",    "runs",      "check",    "facts",     "templates", "folder",
-                                          "commands", "a.yaml",    "a",        "..",        ".",         "",
-                                          "%2e%2e",   "stop",      "events",   "report",    "scene",     "move",
-                                          "reach",    "live",      "operator", "decisions", "make",      "arm",
-                                          "cup",      "catalogue", "stop-now", "\n",        "\xff",      "secret.yaml"};
+  const std::vector<std::string> words = {
+      "files", "runs",      "check",    "facts", "templates", "folder",    "commands",   "a.yaml",
+      "a",     "..",        ".",        "",      "%2e%2e",    "stop",      "events",     "report",
+      "scene", "move",      "reach",    "live",  "operator",  "decisions", "make",       "arm",
+      "cup",   "catalogue", "stop-now", "sheet", "\n",        "\xff",      "secret.yaml"};
   const std::vector<std::string> methods = {"GET", "POST", "PUT", "DELETE", "PATCH", ""};
   const auto any = [&](const std::vector<std::string>& of) {
     return of[static_cast<std::size_t>(rng.index(static_cast<int>(of.size())))];
