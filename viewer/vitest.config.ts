@@ -1,9 +1,9 @@
-// Tests: those of test/unit run in node, those of test/browser drive a real Chromium; one file after the other.
+// Tests that run in node; those in a browser: vitest.browser.config.ts.
 import { defineConfig } from "vitest/config";
 
 export default defineConfig({
   test: {
-    include: ["test/**/*.test.ts"],
+    include: ["test/{unit,export}/**/*.test.ts"],
     fileParallelism: false,
     testTimeout: 60_000,
     hookTimeout: 180_000,

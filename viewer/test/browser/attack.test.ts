@@ -20,7 +20,7 @@ beforeAll(async () => {
   foreign = createServer((_, response) => response.setHeader("Content-Type", "text/html").end("<title>foreign</title>"));
   await new Promise<void>((resolve) => foreign.listen(0, "127.0.0.1", resolve));
   // A name that the attacker owns and lets point to this machine.
-  browser = await openBrowser("--host-resolver-rules=MAP evil.example 127.0.0.1");
+  browser = await openBrowser();
   page = await browser.newPage();
   await page.goto(`http://localhost:${(foreign.address() as AddressInfo).port}/`);
 });

@@ -23,7 +23,7 @@ export async function serveWith(...words: string[]): Promise<{ child: ChildProce
     child.on("exit", (code) => reject(new Error(`snug ${words.join(" ")} ended with ${code}: ${told}`)));
     child.stderr!.on("data", (text: Buffer) => {
       told += text.toString();
-      const found = /showing at (\S+)/.exec(told);
+      const found = /(?:showing|serving .*) at (\S+)/.exec(told);
       if (found) resolve(found[1]!);
     });
   });
