@@ -31,6 +31,18 @@ constexpr const char* kPackExamples = R"(Examples:
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1
 Programs of such a run need the same --items, --container and --pallet in simulate, check and export; recordings hold them.)";
 
+/// Of --perception frames.
+void add_frame_options(const Verb& verb, PackOptions& options) {
+  verb.option("--frames", options.frames, "DIR|COMMAND",
+              "of --perception frames: a folder in which a frame appears at each look, or a command that leaves one: "
+              "{frame} is its path without ending, {look} its number; no shell runs it (docs/camera.md)");
+  verb.option("--frames-timeout", options.frames_patience, "SECONDS", "how long a frame may take", within(0.01, 1e5));
+  verb.option("--frames-camera", options.frames_camera, "FILE",
+              "optics, unit, axes and pose of the camera that takes them, whatever the frames say: JSON or YAML");
+  verb.option("--frames-unit", options.frames_unit, "M", "metres of a step of grey, or of a coordinate",
+              within(1e-7, 1.0));
+}
+
 }  // namespace
 
 void add_packing_options(const Verb& verb, PackOptions& options) {
@@ -111,14 +123,7 @@ void add_pack(CLI::App& app, Action& action) {
               "of ur://HOST: how long a box may take to come to the aligner", within(0.1, 1e6));
   add_client(verb, options.client, "--plant-timeout");
   add_packing_options(verb, options);
-  verb.option("--frames", options.frames, "DIR|COMMAND",
-              "of --perception frames: a folder in which a frame appears at each look, or a command that leaves one: "
-              "{frame} is its path without ending, {look} its number; no shell runs it (docs/camera.md)");
-  verb.option("--frames-timeout", options.frames_patience, "SECONDS", "how long a frame may take", within(0.01, 1e5));
-  verb.option("--frames-camera", options.frames_camera, "FILE",
-              "optics, unit, axes and pose of the camera that takes them, whatever the frames say: JSON or YAML");
-  verb.option("--frames-unit", options.frames_unit, "M", "metres of a step of grey, or of a coordinate",
-              within(1e-7, 1.0));
+  add_frame_options(verb, options);
   verb.option("--monte-carlo", options.monte_carlo, "N",
               "repeat the finished program N times, open loop, in cells drawn from the scenario's `uncertainty`",
               whole(1, kMostRuns));
