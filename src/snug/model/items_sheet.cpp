@@ -138,6 +138,14 @@ bool is_unclear(const std::string& digits) {
 }
 
 std::optional<double> number_of(std::string digits, bool has_decimal_comma) {
+  // A mark that cannot stand between thousands stands before decimals, whatever other numbers of the sheet have.
+  const auto is_before_decimals = [&](char mark, char other) {
+    const std::size_t at = digits.find(mark);
+    return at != std::string::npos && digits.find(other) == std::string::npos &&
+           digits.find(mark, at + 1) == std::string::npos && digits.size() != at + 4;
+  };
+  if (is_before_decimals(',', '.')) has_decimal_comma = true;
+  if (is_before_decimals('.', ',')) has_decimal_comma = false;
   const char group = has_decimal_comma ? '.' : ',';
   std::erase(digits, group);
   std::ranges::replace(digits, ',', '.');

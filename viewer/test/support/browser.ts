@@ -3,22 +3,11 @@
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
-import { chromium, type Browser, type LaunchOptions, type Page } from "playwright-core";
+import { chromium, type Browser, type Page } from "playwright-core";
 import { inject } from "vitest";
 
 const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
 const out = join(root, "test/out");
-
-/** Chromium that draws without a graphics card and asks nobody for anything: every other name is this machine. */
-export function launchOptions(): LaunchOptions {
-  const executablePath = process.env.SNUG_CHROMIUM || "/usr/bin/chromium";
-  if (!existsSync(executablePath)) throw new Error(`${executablePath} is missing: install Debian's package chromium`);
-  return {
-    executablePath,
-    args: ["--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
-      "--disable-background-networking", "--disable-component-update", "--disable-sync", "--host-resolver-rules=MAP evil.example 127.0.0.1"],
-  };
-}
 
 /** The one of all test files (one_browser.ts). To close it is to leave it. */
 export const openBrowser = (): Promise<Browser> => chromium.connect(inject("browser"));

@@ -2,7 +2,7 @@
 
 import { chromium } from "playwright-core";
 import type { TestProject } from "vitest/node";
-import { launchOptions } from "./browser";
+import { launchOptions } from "./launch";
 
 declare module "vitest" {
   export interface ProvidedContext {

@@ -63,6 +63,11 @@ TEST(ItemsSheet, AsksWhetherACommaIsOneOfThousands) {
   EXPECT_TRUE(asked_of("length mm;width mm;height mm;mass g\n200,5;150;100;1,250\n").empty());  // 200,5 says it
 }
 
+TEST(ItemsSheet, ReadsCommasAndPointsBesideEachOther) {
+  EXPECT_EQ(orders_of("length cm;width cm;height cm;mass kg\n18,5;12;10.5;0,4\n"),
+            "length_mm,width_mm,height_mm,mass_kg\n185,120,105,0.4\n");
+}
+
 TEST(ItemsSheet, KeepsWhatItCannotReadInItsLine) {
   const std::string orders = orders_of("length mm;width mm;height mm;mass kg\n\n1e5x;100;100;1\n");
   try {
