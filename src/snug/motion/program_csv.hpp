@@ -10,9 +10,9 @@
 namespace snug::motion {
 
 /// Reads rows x, y, z [m], rotation vector [rad, any length below 100], name, six switches (0 or 1); no header.
-/// Lines that begin with # are comments; some say how it is tracked, and by which robot (program_tracking.hpp). Blank lines, CRLF,
-/// spaces around fields and a missing last newline are fine. Throws InputError with file:line and column for anything
-/// else, and for a file without rows.
+/// Lines that begin with # are comments; some say how it is tracked, and by which robot (program_tracking.hpp). Blank
+/// lines, CRLF, spaces around fields and a missing last newline are fine. Throws InputError with file:line and column
+/// for anything else, and for a file without rows.
 [[nodiscard]] Program load_program(const std::filesystem::path& path);
 /// The same from text; `name` stands for the file in messages.
 [[nodiscard]] Program parse_program(std::string_view text, std::string_view name);
