@@ -182,10 +182,12 @@ std::string take_in_urdf(const std::string& text, const std::string& name,
   auto* root = const_cast<XMLElement*>(read_root(document, text, name));  // NOLINT: the document is ours
   std::string missing;
   std::size_t count = 0;
+  bool is_as_before = true;
   visit_all(root, [&](const XMLElement* one) {
     const std::string_view tag = one->Name();
     if ((tag != "mesh" && tag != "texture") || one->Attribute("filename") == nullptr) return;
     const std::string path = attribute_of(one, "filename"), file = file_of(path);
+    is_as_before = is_as_before && file == path;
     const_cast<XMLElement*>(one)->SetAttribute("filename", file.c_str());  // NOLINT
     if (tag == "texture") return;                                          // nobody draws it
     if (++count > kMostMeshes)
@@ -202,6 +204,7 @@ std::string take_in_urdf(const std::string& text, const std::string& name,
   if (!missing.empty())
     throw InputError(name, "mesh", "files that are not in the folder: " + printable(missing, 400),
                      "these files dropped together with the URDF");
+  if (is_as_before) return text;
   tinyxml2::XMLPrinter printer;
   document.Print(&printer);
   return printer.CStr();

@@ -270,7 +270,7 @@ describe("a run of snug ui", () => {
     await page.getByText(/the operator: \S+ elsewhere/).waitFor();
     appendFileSync(join(folder, "run-1.operator"), "ITEM000005 hold\n"); // as a shell would: it waits again, two boxes later
     await page.getByRole("button", { name: "Skip this box" }).click();
-    await page.getByText(/skipped: by the operator/).waitFor();
+    await page.getByText(/skipped: by the operator/).first().waitFor();
     expect(readFileSync(join(folder, "run-1.operator"), "utf8")).toBe("next hold\nITEM000003 elsewhere\nITEM000005 hold\nITEM000003 skip\n");
     await page.locator(".watch .stage canvas").waitFor();
     await page.waitForFunction(() => (window as unknown as { snugWatch: Watched }).snugWatch.shown() > 0.5);

@@ -200,10 +200,12 @@ TEST(BatchedLeastSquares, TheCovarianceOfASearchThatEndedInALocalMinimumIsLarger
   };
   const BatchedDerivatives at = differentiate(problem, problem.start, {VectorXd()});
   EXPECT_NEAR(squares_covariance(problem, at, 24.0)(0, 0), 1.0, 1e-9);  // smooth: nothing is near that is better
-  jump = 3.0;
-  EXPECT_NEAR(squares_covariance(problem, at)(0, 0), 1.0 + 3.0, 1e-9);
-  EXPECT_NEAR(squares_covariance(problem, at, 24.0)(0, 0), 1.0 + 3.0 + 24.0, 1e-9);
-  EXPECT_NEAR(squares_covariance(problem, at, -5.0)(0, 0), 1.0 + 3.0, 1e-9);
+  jump =
+      3.0;  // a point as good is anywhere within sqrt(3) deviations: a uniform distribution has a third of that square
+  const double wander = jump / 3.0;
+  EXPECT_NEAR(squares_covariance(problem, at)(0, 0), 1.0 + wander, 1e-9);
+  EXPECT_NEAR(squares_covariance(problem, at, 24.0)(0, 0), 1.0 + wander + 24.0, 1e-9);
+  EXPECT_NEAR(squares_covariance(problem, at, -5.0)(0, 0), 1.0 + wander, 1e-9);
 }
 
 }  // namespace

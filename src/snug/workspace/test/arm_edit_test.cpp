@@ -54,6 +54,7 @@ TEST(ArmEdit, SaysWhichLinksCanCarryTheTool) {
 }
 
 TEST(ArmEdit, NamesMeshesByTheirFilesAlone) {
+  EXPECT_EQ(taken_in(gantry("")), gantry("")) << "byte for byte, where nothing is named otherwise";
   for (const char* path : {"package://robot/meshes/link.stl", "file:///etc/link.stl", "../../link.stl", "/etc/link.stl",
                            "C:\\meshes\\link.stl", "link.stl"}) {
     const std::string text = taken_in(gantry(path), {"link.stl"});
