@@ -20,7 +20,9 @@ void SentProgram::start(const Motion& motion) {
     if (program_.waypoints.empty()) begin_ = now;
     const std::size_t first = program_.waypoints.size();
     program_.waypoints.insert(program_.waypoints.end(), motion.waypoints.begin(), motion.waypoints.end());
-    program_.waypoints[first].not_before = motion::as_named(std::clamp(now - begin_, 0.0, motion::kLatestDeparture));
+    const double since = now - begin_;
+    if (since >= 0.0 && since <= motion::kLatestDeparture)
+      program_.waypoints[first].not_before = motion::as_named(since);
     file_.replace(kUnfinishedProgram + motion::format_program(program_));
     if (!file_.is_published() && !file_.replaces_file()) file_.publish();
   }
