@@ -19,8 +19,9 @@ struct ArmFacts {
 /// Throws InputError with file and line for what is no URDF, without looking at anything but the text.
 [[nodiscard]] ArmFacts read_arm_facts(const std::string& text, const std::string& name);
 
-/// The text, as it is where it can be, with every mesh named by its file alone, without folder or package: nothing outside the folder is read.
-/// `has`: whether a file of that name is in the folder. Throws InputError with what is missing.
+/// The text, as it is where it can be, with every mesh named by its file alone, without folder or package: nothing
+/// outside the folder is read. `has`: whether a file of that name is in the folder. Throws InputError with what is
+/// missing.
 [[nodiscard]] std::string take_in_urdf(const std::string& text, const std::string& name,
                                        const std::function<bool(const std::string&)>& has);
 
