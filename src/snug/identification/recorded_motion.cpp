@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <span>
 
@@ -150,21 +149,18 @@ RecordedMotion motion_of(const model::SceneTask& task, const validation::Simulat
   return motion;
 }
 
-/// m, root mean square over the recording, on the clock found for the robot; infinite where none is.
-double tool_distance(const validation::SimulatedRun& run, const record::ArchiveRecording& recording,
-                     const validation::Measurement& measured) {
+/// Of the robot's log; null where none was found.
+const validation::ClockFit* find_robot_clock(const validation::Measurement& measured) {
   const auto clock = std::ranges::find(measured.clocks, "robot", &validation::SourceClock::source);
-  if (clock == measured.clocks.end() || !clock->fit) return std::numeric_limits<double>::infinity();
-  validation::PoseCursor cursor(run.times, run.tool);
-  double sum = 0.0, count = 0.0;
-  for (std::size_t k = 0; k < recording.robot.times.size(); ++k) {
-    const double time = clock->fit->to_reference(recording.robot.times[k]);
-    const record::PoseSample X_WE = cursor.at(time, std::numeric_limits<double>::infinity());
-    if (!record::is_tracked(X_WE)) continue;
-    sum += (X_WE.p - recording.robot.tool[k].p).squaredNorm();
-    count += 1.0;
-  }
-  return count > 0.0 ? std::sqrt(sum / count) : std::numeric_limits<double>::infinity();
+  return clock != measured.clocks.end() && clock->fit ? &*clock->fit : nullptr;
+}
+
+/// Whether the simulated tool goes as the recorded one, at the same time.
+bool goes_alike(const validation::SimulatedRun& run, const record::ArchiveRecording& recording,
+                const validation::ClockFit* clock) {
+  if (clock == nullptr) return false;
+  const auto to_run = [&](double time) { return clock->to_reference(time); };
+  return internal::find_path_distance(run, recording, to_run, 0.0) <= kSameTool;
 }
 
 std::vector<std::string> parcels_of(const model::SceneTask& task) {
@@ -181,18 +177,16 @@ std::vector<std::string> parcels_of(const model::SceneTask& task) {
 /// s, what the robot's log shows at the start of the program, where the program is a session's and its tool goes as the
 /// recorded one, some ticks early or late: rows end by what is felt, which the parameters change.
 std::optional<double> find_session_start(const model::SceneTask& task, const validation::SimulatedRun& run,
-                                         const record::ArchiveRecording& recording,
-                                         const validation::Measurement& measured) {
+                                         const record::ArchiveRecording& recording, const validation::ClockFit* clock) {
   constexpr double kEarlyOrLate = 0.1;  // s
   const motion::Program program = motion::load_program(task.program->file);
   const auto is_timed = [](const motion::Waypoint& one) { return one.not_before.has_value(); };
-  const auto clock = std::ranges::find(measured.clocks, "robot", &validation::SourceClock::source);
-  if (std::ranges::none_of(program.waypoints, is_timed) || clock == measured.clocks.end() || !clock->fit) return {};
+  if (clock == nullptr || std::ranges::none_of(program.waypoints, is_timed)) return {};
   const double first = recording.robot.times.front();
-  const std::optional<double> start =
-      internal::find_program_start(run, recording, first - clock->fit->to_reference(first));
-  if (!start || internal::find_path_distance(run, recording, *start, kEarlyOrLate) > kSameTool) return {};
-  return start;
+  const std::optional<double> start = internal::find_program_start(run, recording, first - clock->to_reference(first));
+  if (!start) return {};
+  const auto to_run = [&](double time) { return time - *start; };
+  return internal::find_path_distance(run, recording, to_run, kEarlyOrLate) <= kSameTool ? start : std::nullopt;
 }
 
 /// Of a program that leads, whose clock is that of the robot's log.
@@ -277,11 +271,12 @@ std::vector<RecordedMotion> motions_of_archive(const model::SceneTask& task, con
     if (run) {
       const validation::Measurement measured = validation::align(*run, recording, {}, where);
       const bool may_lead = task.program->motion == model::TaskMotion::Auto && has_drive(recording);
-      if (!may_lead || tool_distance(*run, recording, measured) <= kSameTool) {
+      const validation::ClockFit* clock = find_robot_clock(measured);
+      if (!may_lead || goes_alike(*run, recording, clock)) {
         motions.push_back(motion_of(task, *run, recording, measured, where));
         continue;
       }
-      if (const std::optional<double> start = find_session_start(task, *run, recording, measured)) {
+      if (const std::optional<double> start = find_session_start(task, *run, recording, clock)) {
         motions.push_back(session_motion(task, *run, recording, *start, where));
         continue;
       }

@@ -16,17 +16,25 @@ constexpr double kBeforeVacuum = 0.2;  // s: the lip touches before the vacuum i
 constexpr double kLeastWay = 0.05;     // m
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
-/// Mean square distance of the tools over the log's first `count` samples, those that the run has.
-double mean_square(const validation::SimulatedRun& run, const record::RobotLog& log, std::size_t count, double start) {
+/// Makes each of `least`, of the log's first samples, as small as the square of how far its tool is from the run's.
+void take_squares(const validation::SimulatedRun& run, const record::RobotLog& log,
+                  const std::function<double(double)>& to_run, std::vector<double>& least) {
   validation::PoseCursor cursor(run.times, run.tool);
-  double sum = 0.0, compared = 0.0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const record::PoseSample X_WE = cursor.at(log.times[k] - start, kForever);
-    if (!record::is_tracked(X_WE)) continue;
-    sum += (X_WE.p - log.tool[k].p).squaredNorm();
-    compared += 1.0;
+  for (std::size_t k = 0; k < least.size(); ++k) {
+    const record::PoseSample X_WE = cursor.at(to_run(log.times[k]), kForever);
+    if (record::is_tracked(X_WE)) least[k] = std::min(least[k], (X_WE.p - log.tool[k].p).squaredNorm());
   }
-  return compared > 0.0 ? sum / compared : kForever;
+}
+
+/// Of those that are finite; infinite where none is.
+double root_mean(const std::vector<double>& squares) {
+  double sum = 0.0, count = 0.0;
+  for (const double square : squares) {
+    if (!std::isfinite(square)) continue;
+    sum += square;
+    count += 1.0;
+  }
+  return count > 0.0 ? std::sqrt(sum / count) : kForever;
 }
 
 }  // namespace
@@ -49,35 +57,27 @@ std::optional<double> find_program_start(const validation::SimulatedRun& run, co
     const int steps = static_cast<int>(std::round(reach / step));
     for (int i = -steps; i <= steps; ++i) {
       const double start = middle + i * step;
-      const double square = mean_square(run, log, count, start);
-      if (square >= least) continue;
-      least = square;
+      std::vector<double> squares(count, kForever);
+      take_squares(
+          run, log, [start](double time) { return time - start; }, squares);
+      const double distance = root_mean(squares);
+      if (distance >= least) continue;
+      least = distance;
       best = start;
     }
   }
   return best;
 }
 
-double find_path_distance(const validation::SimulatedRun& run, const record::ArchiveRecording& recording, double start,
-                          double early_or_late) {
+double find_path_distance(const validation::SimulatedRun& run, const record::ArchiveRecording& recording,
+                          const std::function<double(double)>& to_run, double early_or_late) {
   constexpr double kTick = 8e-3;  // s
-  const record::RobotLog& log = recording.robot;
-  std::vector<double> least(log.times.size(), kForever);
+  std::vector<double> least(recording.robot.times.size(), kForever);
   const int steps = static_cast<int>(std::ceil(early_or_late / kTick));
-  for (int i = -steps; i <= steps; ++i) {
-    validation::PoseCursor cursor(run.times, run.tool);
-    for (std::size_t k = 0; k < log.times.size(); ++k) {
-      const record::PoseSample X_WE = cursor.at(log.times[k] - start + i * kTick, kForever);
-      if (record::is_tracked(X_WE)) least[k] = std::min(least[k], (X_WE.p - log.tool[k].p).squaredNorm());
-    }
-  }
-  double sum = 0.0, compared = 0.0;
-  for (const double square : least) {
-    if (!std::isfinite(square)) continue;
-    sum += square;
-    compared += 1.0;
-  }
-  return compared > 0.0 ? std::sqrt(sum / compared) : kForever;
+  for (int i = -steps; i <= steps; ++i)
+    take_squares(
+        run, recording.robot, [&](double time) { return to_run(time) + i * kTick; }, least);
+  return root_mean(least);
 }
 
 }  // namespace snug::identification::internal

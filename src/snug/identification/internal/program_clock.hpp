@@ -1,6 +1,7 @@
 // Program clock: where a robot's log stands in time beside a run of the program that the robot was sent.
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "snug/record/archive.hpp"
@@ -15,7 +16,8 @@ namespace snug::identification::internal {
                                                        const record::ArchiveRecording& recording, double guess);
 
 /// m, root mean square over the log: how far its tool is from where the run's tool is within `early_or_late` seconds.
+/// `to_run`: of the log's clock, the run's. Infinite where no sample of the log is within the run.
 [[nodiscard]] double find_path_distance(const validation::SimulatedRun& run, const record::ArchiveRecording& recording,
-                                        double start, double early_or_late);
+                                        const std::function<double(double)>& to_run, double early_or_late);
 
 }  // namespace snug::identification::internal
