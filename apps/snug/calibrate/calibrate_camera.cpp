@@ -98,7 +98,7 @@ void add_calibrate_camera(const Verb& verb) {
   CalibrateCameraOptions& options = part.runs(run_calibrate_camera);
   part.option("poses", options.input, "FILE.csv", "of the tool, and of what it holds as the camera sees it").required();
   part.option("--name", options.name, "NAME", "of the camera in what is written");
-  part.option("--preset", options.preset, "NAME", "of the camera in what is written",
+  part.option("--preset", options.preset, "NAME", "kind of camera in what is written: its noise and range",
               one_of({"structured_light", "active_stereo", "ideal"}));
   part.option("-o,--output", options.output, "FILE.yaml", "block for a scenario: pose and hand-eye error");
   add_json(part, options.json);
