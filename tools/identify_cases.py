@@ -5,7 +5,7 @@
 
 Draws tasks whose truth is known: a box that slides against a wall, or is pushed by another, or falls. In some the start values do not reach the wall, or the
 truth does not; two numbers do the same (friction and gravity; a mass that nothing depends on); the recorded world is shifted, turned, late or runs at
-another rate; noise is larger than declared; samples jump. Prints a line for each task, and for each kind how many numbers were called identified, and how
+another rate, which nothing in the recordings shows: the task says how well its clock is known; noise is larger than declared; samples jump. Prints a line for each task, and for each kind how many numbers were called identified, and how
 far off they are in their standard errors. Exit code 1 where one called identified is more than three of them off."""
 import argparse
 import collections
@@ -110,7 +110,8 @@ def write_recordings(kind, rows, bodies, columns, noise, path, draw):
                 cells = []
                 for body in bodies:
                     x, y, z = (float(row[column]) for column in columns[body][:3])
-                    q = [float(row[column]) for column in columns[body][3:]]
+                    w, i, j, k = (float(row[column]) for column in columns[body][3:])
+                    q = [w, -i, -j, -k]  # the table has the rotation from the world to the body
                     if kind == "shifted world":
                         x += shift
                     if kind == "turned world":
@@ -158,6 +159,7 @@ def make_case(kind, folder, draw):
     task = {"scenario": "start.yaml", "recordings": ["recorded.csv"], "input_columns": {"recording": "rec", "time": "t"},
             "tracked_objects": [{"body": body, "columns": [f"{body}_{axis}" for axis in ("x", "y", "z", "qw", "qx", "qy", "qz")]} for body in bodies],
             "noise": {"position": noise, "rotation_deg": 0.3}, "start": {"from": "scenario"}, "search": {"local": 100, "held_back": 5},
+            "clock_rate": 4e-3 if kind == "clock rate" else 1e-4,
             "parameters": [{"name": name, "path": NUMBERS[name][0], "value": values[name],
                             "bounds": list(NUMBERS[name][1:]) if NUMBERS[name][1] is not None else [truth[name] - 0.05, truth[name] + 0.05]} for name in names]}
     (folder / "task.yaml").write_text(json.dumps(task, indent=1), encoding="utf-8")

@@ -36,6 +36,21 @@ DrivenPath draw_again(const DrivenPath& path, Rng& rng) {
   return {path.body, with_noise(path.position, rng), with_noise(path.rotation, rng)};
 }
 
+DrivenPath smooth_again(const DrivenPath& path) {
+  return {path.body, numerics::smooth_alike(path.position, path.position.values),
+          numerics::smooth_alike(path.rotation, path.rotation.values)};
+}
+
+DrivenPath moved_towards(const DrivenPath& path, const std::vector<DrivenPath>& others, const Eigen::VectorXd& shares) {
+  DrivenPath result = path;
+  for (Eigen::Index k = 0; k < shares.size(); ++k) {
+    const DrivenPath& other = others[static_cast<std::size_t>(k)];
+    result.position.values += shares[k] * (other.position.values - path.position.values);
+    result.rotation.values += shares[k] * (other.rotation.values - path.rotation.values);
+  }
+  return result;
+}
+
 model::PosePath pose_path_of(const DrivenPath& driven, double origin) {
   model::PosePath path;
   for (std::size_t k = 0; k < driven.position.times.size(); ++k) {

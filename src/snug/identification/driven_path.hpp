@@ -25,6 +25,11 @@ struct DrivenPath {
 [[nodiscard]] DrivenPath smooth_path(const std::vector<double>& times, const RecordedBody& recorded);
 /// The same from samples that are off the path by new noise: how far noise moves the path.
 [[nodiscard]] DrivenPath draw_again(const DrivenPath& path, Rng& rng);
+/// The same from samples that are on the path: how far smoothing moves it where it bends.
+[[nodiscard]] DrivenPath smooth_again(const DrivenPath& path);
+/// The path with so much of how far each of some others at the same times is off it.
+[[nodiscard]] DrivenPath moved_towards(const DrivenPath& path, const std::vector<DrivenPath>& others,
+                                       const Eigen::VectorXd& shares);
 /// `origin`: s, of the recording's clock at time 0 of the path.
 [[nodiscard]] model::PosePath pose_path_of(const DrivenPath& path, double origin);
 

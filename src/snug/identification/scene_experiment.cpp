@@ -19,12 +19,17 @@
 #include "snug/identification/internal/recording_checks.hpp"
 #include "snug/identification/internal/scene_motion.hpp"
 #include "snug/model/number_edit.hpp"
+#include "snug/numerics/dense.hpp"
 
 namespace snug::identification {
 namespace {
 
 constexpr std::size_t kKnownRuns = 64;  // that are kept, a few MB each
 constexpr double kOwnStep = 0.01;       // of what is expected of an own unknown, for differences
+constexpr double kPathStep = 0.3;    // the same, of a driven body's path: what sticks or slides shows no slope nearer
+constexpr int kPathDraws = 32;       // of noise
+constexpr double kPathFactor = 3.0;  // what is expected of a path, over what noise leaves in it: decision 0112
+constexpr Eigen::Index kPathUnknowns = 16;  // the same
 
 }  // namespace
 
@@ -133,20 +138,75 @@ void SceneExperiment::find_flights() {
 }
 
 void SceneExperiment::find_driven() {
-  driven_.assign(motions_.size(), std::vector<std::vector<DrivenPath>>(1 + kDraws));
+  driven_.resize(motions_.size());
   if (task_.program) return;
+  for (std::size_t m = 0; m < motions_.size(); ++m)
+    for (const RecordedBody& body : motions_[m].kinematic)
+      if (std::ranges::any_of(body.poses, record::is_tracked))
+        driven_[m].push_back({smooth_path(motions_[m].times, body), {}});
+  const auto is_noisy = [](const Driven& driven) {
+    return driven.path.position.noise > 0.0 || driven.path.rotation.noise > 0.0;
+  };
+  if (task_.loss != model::TaskLoss::Squares ||
+      std::ranges::none_of(driven_, [&](const auto& bodies) { return std::ranges::any_of(bodies, is_noisy); }))
+    return;
+  // What noise leaves in the paths, all draws together as large as one, and what smoothing does where they bend.
+  const Eigen::VectorXd whole = kPathFactor * Eigen::VectorXd::Ones(1);
+  const Eigen::VectorXd share = whole / std::sqrt(static_cast<double>(kPathDraws));
   for (std::size_t m = 0; m < motions_.size(); ++m) {
-    std::vector<std::vector<DrivenPath>>& draws = driven_[m];
     Rng rng = Rng(task_.search.seed).split("driven bodies").split(motions_[m].name);
-    for (const RecordedBody& body : motions_[m].kinematic) {
-      if (std::ranges::none_of(body.poses, record::is_tracked)) continue;
-      draws[0].push_back(smooth_path(motions_[m].times, body));
-      for (int k = 1; k <= kDraws; ++k) draws[static_cast<std::size_t>(k)].push_back(draw_again(draws[0].back(), rng));
+    for (Driven& driven : driven_[m]) {
+      for (int k = 0; k < kPathDraws; ++k)
+        driven.modes.push_back(moved_towards(driven.path, {draw_again(driven.path, rng)}, share));
+      driven.modes.push_back(moved_towards(driven.path, {smooth_again(driven.path)}, whole));
     }
   }
+  path_unknowns_ = kPathDraws + 1;
+  keep_largest_modes();
 }
 
-Eigen::VectorXd SceneExperiment::own_deviation() const { return internal::own_deviation(task_); }
+void SceneExperiment::keep_largest_modes() {
+  // Principal directions of what the modes do to the tracked bodies, at the start values.
+  const std::vector<Eigen::VectorXd> points{start()};
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(own_deviation().size());
+  std::vector<Job> jobs;
+  for (std::size_t m = 0; m < motions_.size(); ++m)
+    for (int k = 0; k <= path_unknowns_; ++k) {
+      jobs.push_back({0, m, none});
+      if (k > 0) jobs.back().own[none.size() - path_unknowns_ + k - 1] = 1.0;
+    }
+  const std::vector<MotionError> errors = evaluate(points, jobs);
+  const auto each = static_cast<std::size_t>(path_unknowns_) + 1;
+  for (std::size_t m = 0; m < motions_.size(); ++m) {
+    const Eigen::VectorXd& middle = errors[m * each].residuals;
+    Eigen::MatrixXd effects = Eigen::MatrixXd::Zero(samples_of(m), path_unknowns_);
+    for (Eigen::Index k = 0; k < path_unknowns_; ++k) {
+      const Eigen::VectorXd& moved = errors[m * each + 1 + static_cast<std::size_t>(k)].residuals;
+      if (moved.size() > 0 && moved.size() == middle.size()) effects.col(k) = (moved - middle).head(effects.rows());
+    }
+    const Eigen::MatrixXd shares =
+        numerics::symmetric_eigenpairs(numerics::transposed_product(effects, effects)).vectors;
+    for (Driven& driven : driven_[m]) {
+      std::vector<DrivenPath> kept;
+      for (Eigen::Index k = 0; k < kPathUnknowns; ++k)
+        kept.push_back(moved_towards(driven.path, driven.modes, shares.col(path_unknowns_ - 1 - k)));
+      driven.modes = std::move(kept);
+    }
+  }
+  path_unknowns_ = kPathUnknowns;
+}
+
+std::vector<DrivenPath> SceneExperiment::driven_of(std::size_t motion, const Eigen::VectorXd& shares) const {
+  std::vector<DrivenPath> paths;
+  for (const Driven& driven : driven_[motion]) paths.push_back(moved_towards(driven.path, driven.modes, shares));
+  return paths;
+}
+
+internal::OwnValues SceneExperiment::own_values(const Eigen::VectorXd& values) const {
+  return {task_, path_unknowns_, values};
+}
+
+Eigen::VectorXd SceneExperiment::own_deviation() const { return internal::own_deviation(task_, path_unknowns_); }
 
 Eigen::Index SceneExperiment::samples_of(std::size_t motion) const {
   const std::vector<BodyRows> rows = rows_of(motion);
@@ -179,7 +239,8 @@ numerics::BatchedProblem::Term SceneExperiment::term_of(std::size_t motion) cons
   const Eigen::Index samples = rows.back().first + rows.back().count;
   numerics::BatchedProblem::Term term{
       samples + deviation.size(), Eigen::VectorXd::Zero(deviation.size()), kOwnStep * deviation, {}};
-  for (const std::optional<std::size_t> body : internal::own_bodies(task_)) {
+  term.own_step.tail(path_unknowns_) *= kPathStep / kOwnStep;
+  for (const std::optional<std::size_t> body : internal::own_bodies(task_, path_unknowns_)) {
     const Eigen::Index prior = samples + static_cast<Eigen::Index>(term.own_rows.size());  // its row
     const Eigen::Index first = body ? rows[*body].first : 0, count = body ? rows[*body].count : samples;
     term.own_rows.push_back({{first, count}, {prior, 1}});
@@ -189,8 +250,7 @@ numerics::BatchedProblem::Term SceneExperiment::term_of(std::size_t motion) cons
 
 MotionError SceneExperiment::compare(const internal::SimulatedMotion& simulated, std::size_t motion,
                                      const Eigen::VectorXd& own, double until) const {
-  MotionError error =
-      internal::compare(task_, motions_[motion], samples_[motion], simulated, internal::OwnValues(task_, own), until);
+  MotionError error = internal::compare(task_, motions_[motion], samples_[motion], simulated, own_values(own), until);
   const Eigen::VectorXd deviation = own_deviation();
   if (deviation.size() > 0 && error.failure.empty()) {
     const Eigen::VectorXd used = own.size() > 0 ? own : Eigen::VectorXd(Eigen::VectorXd::Zero(deviation.size()));
@@ -231,7 +291,7 @@ std::vector<MotionError> SceneExperiment::evaluate_program(std::span<const Eigen
   std::map<std::pair<std::size_t, std::size_t>, double> ends;
   for (const Job& job : jobs) {
     double& end = ends[{job.point, lead_of(job.motion)}];
-    end = std::max(end, internal::end_of(task_, motions_[job.motion], internal::OwnValues(task_, job.own), until));
+    end = std::max(end, internal::end_of(task_, motions_[job.motion], own_values(job.own), until));
   }
   // A little more than asked for, so that a start that is a little later needs no other run.
   constexpr double kMore = 0.05;  // s
@@ -260,7 +320,7 @@ std::vector<MotionError> SceneExperiment::evaluate_program(std::span<const Eigen
   parallel_for(static_cast<int>(jobs.size()), threads_, [&](int index, int) {
     const auto j = static_cast<std::size_t>(index);
     const Job& job = jobs[j];
-    const internal::OwnValues own(task_, job.own);
+    const internal::OwnValues own = own_values(job.own);
     const internal::ProgramRun& run =
         *find_run(points[job.point], lead_of(job.motion), ends.at({job.point, lead_of(job.motion)}));
     errors[j] =
@@ -272,6 +332,24 @@ std::vector<MotionError> SceneExperiment::evaluate_program(std::span<const Eigen
   return errors;
 }
 
+internal::SimulatedMotion SceneExperiment::simulate(const model::Scenario& scenario, const Job& job,
+                                                    double until) const {
+  const internal::OwnValues own = own_values(job.own);
+  std::vector<DrivenPath> driven = driven_of(job.motion, own.path);
+  if (job.clock_rate == 0.0)
+    return internal::simulate_scene(scenario, task_, motions_[job.motion], driven, flights_[job.motion], own, until);
+  const double slower = 1.0 / (1.0 + job.clock_rate);
+  RecordedMotion motion = motions_[job.motion];
+  for (double& time : motion.times) time *= slower;
+  for (RecordedBody& body : motion.tracked)
+    for (Twist& twist : body.twists) twist = {twist.linear / slower, twist.angular / slower};
+  for (DrivenPath& path : driven) {
+    for (double& time : path.position.times) time *= slower;
+    for (double& time : path.rotation.times) time *= slower;
+  }
+  return internal::simulate_scene(scenario, task_, motion, driven, flights_[job.motion], own, until * slower);
+}
+
 std::vector<MotionError> SceneExperiment::evaluate_scenes(std::span<const Eigen::VectorXd> points,
                                                           std::span<const Job> jobs, double until) const {
   std::vector<std::optional<model::Scenario>> scenarios(points.size());
@@ -280,15 +358,16 @@ std::vector<MotionError> SceneExperiment::evaluate_scenes(std::span<const Eigen:
     const auto i = static_cast<std::size_t>(index);
     scenarios[i] = find_scenario(points[i], failures[i]);
   });
-  // What a recording has of its own moves bodies by their start and the delay only.
+  // What a recording has of its own moves bodies by their start, the delay and the driven bodies' paths only.
   std::map<std::pair<std::pair<std::size_t, std::size_t>, std::vector<double>>, std::size_t> known;
   std::vector<std::size_t> first, simulation_of;  // job of each simulation, simulation of each job
   for (std::size_t j = 0; j < jobs.size(); ++j) {
-    const internal::OwnValues own(task_, jobs[j].own);
+    const internal::OwnValues own = own_values(jobs[j].own);
     const Vector6 start = as_vector(own.start);
     std::vector<double> moving(start.data(), start.data() + start.size());
     moving.push_back(own.delay);
-    moving.push_back(jobs[j].draw);
+    moving.push_back(jobs[j].clock_rate);
+    moving.insert(moving.end(), own.path.data(), own.path.data() + own.path.size());
     const auto [at, is_new] = known.insert({{{jobs[j].point, jobs[j].motion}, std::move(moving)}, first.size()});
     if (is_new) first.push_back(j);
     simulation_of.push_back(at->second);
@@ -297,12 +376,8 @@ std::vector<MotionError> SceneExperiment::evaluate_scenes(std::span<const Eigen:
   parallel_for(static_cast<int>(first.size()), threads_, [&](int index, int) {
     const auto i = static_cast<std::size_t>(index);
     const Job& job = jobs[first[i]];
-    if (!scenarios[job.point])
-      simulated[i].failure = failures[job.point];
-    else
-      simulated[i] = internal::simulate_scene(*scenarios[job.point], task_, motions_[job.motion],
-                                              driven_[job.motion][static_cast<std::size_t>(job.draw)],
-                                              flights_[job.motion], internal::OwnValues(task_, job.own), until);
+    if (!scenarios[job.point]) simulated[i].failure = failures[job.point];
+    simulated[i] = simulate(*scenarios[job.point], job, until);
   });
   std::vector<MotionError> errors(jobs.size());
   parallel_for(static_cast<int>(jobs.size()), threads_, [&](int index, int) {
@@ -316,14 +391,14 @@ std::vector<MotionError> SceneExperiment::evaluate_floor(const Eigen::VectorXd& 
   if (task_.start.from != model::StartFrom::FreeFlight)
     throw InputError(task_.path.string(), "start", "no free flight", "from: free_flight, whose noise sets the floor");
   const model::Scenario scenario = scenario_at(values);
-  const internal::OwnValues own(task_, {});
+  const internal::OwnValues own = own_values({});
   constexpr double kAll = std::numeric_limits<double>::infinity();
   std::vector<MotionError> errors(motions_.size());
   parallel_for(static_cast<int>(motions_.size()), threads_, [&](int index, int) {
     const auto m = static_cast<std::size_t>(index);
     RecordedMotion twin = motions_[m];
     const internal::SimulatedMotion exact =
-        internal::simulate_scene(scenario, task_, twin, driven_of(m), flights_[m], own, kAll);
+        internal::simulate_scene(scenario, task_, twin, driven_of(m, {}), flights_[m], own, kAll);
     RecordedMotion noisy = twin;
     Rng rng = Rng(seed).split("floor " + twin.name);
     for (std::size_t b = 0; b < twin.tracked.size() && exact.failure.empty(); ++b) {
@@ -345,7 +420,7 @@ std::vector<MotionError> SceneExperiment::evaluate_floor(const Eigen::VectorXd& 
       }
     }
     internal::SimulatedMotion again =
-        internal::simulate_scene(scenario, task_, noisy, driven_of(m), flights_[m], own, kAll);
+        internal::simulate_scene(scenario, task_, noisy, driven_of(m, {}), flights_[m], own, kAll);
     if (!exact.failure.empty()) again.failure = exact.failure;
     errors[m] = internal::compare(task_, twin, internal::compared_samples(task_, twin), again, own, kAll);
   });

@@ -19,6 +19,7 @@ namespace snug::identification {
 namespace internal {
 struct SimulatedMotion;
 struct ProgramRun;
+struct OwnValues;
 }  // namespace internal
 
 /// How far the simulation of one recording is from it.
@@ -58,9 +59,8 @@ class SceneExperiment {
     std::size_t point = 0;     ///< of `points`
     std::size_t motion = 0;    ///< recording
     Eigen::VectorXd own = {};  ///< its own unknowns; empty: all zero
-    int draw = 0;              ///< of the driven bodies' paths: 0, the smoothed ones, to kDraws, with noise anew
+    double clock_rate = 0.0;   ///< by how much the clock that recorded is fast, relative; not in a program's run
   };
-  static constexpr int kDraws = 8;
   /// `points`: values of all parameters of the task, in its order. Each job is a simulation, but those of a point that
   /// differ in nothing that moves a body share one, and all that a program leads share one run. The result does not
   /// depend on the number of threads. What cannot be simulated says so. Samples after `until`, s on the recording's
@@ -78,7 +78,9 @@ class SceneExperiment {
   [[nodiscard]] const std::vector<RecordedMotion>& motions() const { return motions_; }
   [[nodiscard]] Eigen::VectorXd start() const;  ///< values of the task
   /// Of the bodies that a recording drives, smoothed; none in a program's run.
-  [[nodiscard]] const std::vector<DrivenPath>& driven_of(std::size_t motion) const { return driven_[motion].front(); }
+  [[nodiscard]] std::vector<DrivenPath> driven_of(std::size_t motion) const { return driven_of(motion, {}); }
+  /// Own unknowns of a recording that are shares of paths near the smoothed ones; 0 where none is noisy.
+  [[nodiscard]] Eigen::Index path_unknowns() const { return path_unknowns_; }
   [[nodiscard]] Eigen::VectorXd own_deviation() const;  ///< expected of the own unknowns; empty when there are none
   /// Numbers measured in a recording: residuals less those of own unknowns against what is expected of them.
   [[nodiscard]] Eigen::Index samples_of(std::size_t motion) const;
@@ -118,14 +120,26 @@ class SceneExperiment {
   void expect_world_errors();
   void find_flights();
   void find_driven();
+  /// Fewer modes, combinations that change most of what is compared.
+  void keep_largest_modes();
+  [[nodiscard]] std::vector<DrivenPath> driven_of(std::size_t motion, const Eigen::VectorXd& shares) const;
+  [[nodiscard]] internal::SimulatedMotion simulate(const model::Scenario& scenario, const Job& job, double until) const;
+  [[nodiscard]] internal::OwnValues own_values(const Eigen::VectorXd& values) const;
 
   model::SceneTask task_;
   std::vector<RecordedMotion> motions_;
   int threads_ = 1;
   model::Scenario base_;
-  std::vector<std::vector<double>> base_numbers_;             ///< of each parameter's paths, for scales and offsets
-  std::vector<std::vector<std::vector<DrivenPath>>> driven_;  ///< of each motion and draw
-  std::vector<std::vector<std::size_t>> flights_;             ///< rows before the first touch, of each motion's bodies
+  std::vector<std::vector<double>> base_numbers_;  ///< of each parameter's paths, for scales and offsets
+  /// A body that a recording drives: its smoothed path, and paths that are as far off it as one deviation of an own
+  /// unknown, the same one for all driven bodies of a recording.
+  struct Driven {
+    DrivenPath path;
+    std::vector<DrivenPath> modes;
+  };
+  std::vector<std::vector<Driven>> driven_;        ///< of each motion
+  Eigen::Index path_unknowns_ = 0;                 ///< that each motion has of its own: shares of modes
+  std::vector<std::vector<std::size_t>> flights_;  ///< rows before the first touch, of each motion's bodies
   std::vector<std::vector<std::vector<std::size_t>>> samples_;  ///< that are compared, of each motion's bodies
   mutable std::vector<KnownRun> runs_;                          ///< the latest last
 };

@@ -174,10 +174,26 @@ SceneTask read(const Value& root, std::string_view text, const std::filesystem::
   SceneTask task;
   task.path = path;
   task.text = std::string(text);
-  const MapReader map = root.map(
-      "task", {"scenario", "program", "recordings", "input_columns", "tracked_objects", "kinematic_bodies",
-               "optimize_position", "optimize_rotation", "rotation_position_ratio", "only_final_state", "time_step",
-               "simulation_time", "loss", "noise", "right_within_deg", "start", "own", "search", "parameters"});
+  const MapReader map = root.map("task", {"scenario",
+                                          "program",
+                                          "recordings",
+                                          "input_columns",
+                                          "tracked_objects",
+                                          "kinematic_bodies",
+                                          "optimize_position",
+                                          "optimize_rotation",
+                                          "rotation_position_ratio",
+                                          "only_final_state",
+                                          "time_step",
+                                          "simulation_time",
+                                          "loss",
+                                          "noise",
+                                          "right_within_deg",
+                                          "start",
+                                          "own",
+                                          "clock_rate",
+                                          "search",
+                                          "parameters"});
   task.scenario = beside(map.require("scenario"), path);
   if (const auto value = map.find("program")) task.program = read_program(*value, path);
   read_error(map, task);
@@ -189,6 +205,8 @@ SceneTask read(const Value& root, std::string_view text, const std::filesystem::
   if (task.program && task.start.from != StartFrom::Scenario)
     map.require("start").fail("from: scenario, as a program's boxes come to the aligner");
   if (const auto value = map.find("own")) internal::read_fields(*value, "own", task.own);
+  if (const auto value = map.find("clock_rate"))
+    task.clock_rate = value->number_within(0.0, 0.1, "a share, 1e-4 = 100 ppm");
   if (const auto value = map.find("search")) read_search(*value, task.search);
   read_parameters(map.require("parameters"), task);
   return task;

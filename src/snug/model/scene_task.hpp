@@ -136,6 +136,7 @@ struct SceneTask {
   double right_within = 0.5235987755982988;  ///< rad, rotation error at the end up to which an orientation is right
   StartSettings start;
   OwnSettings own;
+  double clock_rate = 1e-4;  ///< relative, expected of the clock that recorded, the same in all recordings: quartz
   SearchSettings search;
   std::vector<TaskParameter> parameters;
   bool operator==(const SceneTask&) const = default;

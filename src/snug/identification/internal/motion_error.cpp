@@ -18,7 +18,8 @@ MotionError compare(const model::SceneTask& task, const RecordedMotion& motion, 
   const int numbers = numbers_of(task);
   std::size_t all = 0;
   for (const std::vector<std::size_t>& of_body : samples) all += of_body.size();
-  error.residuals = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(all) * numbers + own_deviation(task).size());
+  error.residuals =
+      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(all) * numbers + own_deviation(task, own.path.size()).size());
   Eigen::Index at = 0;
   double count = 0.0;
   for (std::size_t b = 0; b < motion.tracked.size(); ++b) {

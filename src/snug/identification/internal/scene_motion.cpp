@@ -48,7 +48,8 @@ void drive(model::Scenario& scenario, std::span<const DrivenPath> driven, double
 
 }  // namespace
 
-OwnValues::OwnValues(const model::SceneTask& task, const Eigen::VectorXd& values) : X_BM(task.tracked.size()) {
+OwnValues::OwnValues(const model::SceneTask& task, Eigen::Index path_unknowns, const Eigen::VectorXd& values)
+    : X_BM(task.tracked.size()), path(Eigen::VectorXd::Zero(path_unknowns)) {
   if (values.size() == 0) return;
   const model::OwnSettings& settings = task.own;
   Eigen::Index at = 0;
@@ -66,9 +67,10 @@ OwnValues::OwnValues(const model::SceneTask& task, const Eigen::VectorXd& values
     X.p = take3(settings.frame_position);
     X.R = exp_rotation(take3(settings.frame_rotation));
   }
+  path = values.tail(path_unknowns);
 }
 
-Eigen::VectorXd own_deviation(const model::SceneTask& task) {
+Eigen::VectorXd own_deviation(const model::SceneTask& task, Eigen::Index path_unknowns) {
   const model::OwnSettings& settings = task.own;
   std::vector<double> deviation;
   const auto add = [&](double value, int count) {
@@ -83,14 +85,16 @@ Eigen::VectorXd own_deviation(const model::SceneTask& task) {
     add(settings.frame_position, 3);
     add(settings.frame_rotation, 3);
   }
+  add(1.0, static_cast<int>(path_unknowns));
   return Eigen::Map<const Eigen::VectorXd>(deviation.data(), static_cast<Eigen::Index>(deviation.size()));
 }
 
-std::vector<std::optional<std::size_t>> own_bodies(const model::SceneTask& task) {
-  const std::size_t bodies = task.tracked.size(), count = static_cast<std::size_t>(own_deviation(task).size());
+std::vector<std::optional<std::size_t>> own_bodies(const model::SceneTask& task, Eigen::Index path_unknowns) {
+  const std::size_t bodies = task.tracked.size(), count = static_cast<std::size_t>(own_deviation(task, 0).size());
   const std::size_t each = (task.own.frame_position > 0.0 ? 3U : 0U) + (task.own.frame_rotation > 0.0 ? 3U : 0U);
   std::vector<std::optional<std::size_t>> result(count - bodies * each);
   for (std::size_t b = 0; b < bodies; ++b) result.insert(result.end(), each, b);
+  result.resize(result.size() + static_cast<std::size_t>(path_unknowns));
   return result;
 }
 

@@ -17,17 +17,19 @@ namespace snug::identification::internal {
 /// What a recording has of its own, by name.
 struct OwnValues {
   /// `values`: in the order of own_deviation(); empty: all zero.
-  OwnValues(const model::SceneTask& task, const Eigen::VectorXd& values);
+  OwnValues(const model::SceneTask& task, Eigen::Index path_unknowns, const Eigen::VectorXd& values);
   Twist start;             ///< added to the start twist of each tracked body
   double delay = 0.0;      ///< s
   Pose bias;               ///< of the simulation's world in the recorded one
   std::vector<Pose> X_BM;  ///< of each tracked body: the frame that was recorded
+  Eigen::VectorXd path;    ///< how much of each draw of the driven bodies' paths is in them; see moved_towards
 };
 /// Standard deviations expected of velocity (3), angular velocity (3), delay, bias: position (3), rotation vector (3),
-/// then of each tracked body's frame the same; as far as they are fitted.
-[[nodiscard]] Eigen::VectorXd own_deviation(const model::SceneTask& task);
+/// then of each tracked body's frame the same; as far as they are fitted; of the driven bodies' paths last.
+[[nodiscard]] Eigen::VectorXd own_deviation(const model::SceneTask& task, Eigen::Index path_unknowns);
 /// For each own unknown: the one tracked body of which it changes residuals; none: it may change those of all.
-[[nodiscard]] std::vector<std::optional<std::size_t>> own_bodies(const model::SceneTask& task);
+[[nodiscard]] std::vector<std::optional<std::size_t>> own_bodies(const model::SceneTask& task,
+                                                                 Eigen::Index path_unknowns);
 
 struct SimulatedMotion {
   /// X_WB by tracked body at each time of the recording; not a number where the simulation does not reach.

@@ -393,7 +393,7 @@ Eigen::MatrixXd SceneSearch::covariance() {
     const double excess = (chi2 - 1.0) * counted - 2.0 * std::sqrt(2.0 * counted);  // more than chance, twice
     const numerics::BatchedDerivatives found = result_ ? at.derivatives : numerics::differentiate(there, at.x, at.own);
     of_free = numerics::squares_covariance(there, found, excess) * (std::isfinite(chi2) ? errors.inflation() : 1.0) +
-              driven_covariance(at, found);
+              clock_covariance(at, found);
   }
   const auto all = static_cast<Eigen::Index>(experiment_.task().parameters.size());
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(all, all);
@@ -402,6 +402,26 @@ Eigen::MatrixXd SceneSearch::covariance() {
       result(static_cast<Eigen::Index>(free_[i]), static_cast<Eigen::Index>(free_[j])) =
           of_free(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
   return result;
+}
+
+Eigen::MatrixXd SceneSearch::clock_covariance(const Fitted& at, const numerics::BatchedDerivatives& found) const {
+  const auto n = static_cast<Eigen::Index>(free_.size());
+  const double rate = experiment_.task().clock_rate;
+  if (rate == 0.0 || experiment_.task().program) return Eigen::MatrixXd::Zero(n, n);
+  std::vector<SceneExperiment::Job> jobs;
+  for (const double of_job : {0.0, rate})
+    for (std::size_t i = 0; i < fitted_.size(); ++i) jobs.push_back({0, fitted_[i], at.own[i], of_job});
+  std::vector<MotionError> errors = experiment_.evaluate(std::vector<Eigen::VectorXd>{full(at.x)}, jobs);
+  std::vector<Eigen::VectorXd> changes;
+  for (std::size_t i = 0; i < fitted_.size(); ++i) {
+    Eigen::VectorXd &exact = errors[i].residuals, &fast = errors[fitted_.size() + i].residuals;
+    if (exact.size() != fast.size()) return Eigen::MatrixXd::Zero(n, n);
+    fast -= exact;
+    weigh(experiment_, fitted_[i], at.rows[i], at.weights[i], fast);
+    changes.push_back(std::move(fast));
+  }
+  const Eigen::VectorXd step = numerics::shared_step(found, changes, n);
+  return step * step.transpose();
 }
 
 Eigen::VectorXd SceneSearch::curvature_steps(const Eigen::VectorXd& middle) {

@@ -127,8 +127,8 @@ class SceneSearch {
   };
   /// `may_widen`: at.step becomes larger where small steps show only roughness.
   [[nodiscard]] Straight find_straight_rows(double until, const RowCounts& within, bool may_widen, Fitted& at) const;
-  /// Of the free parameters: what the noise that smoothing leaves in the paths of driven bodies does to them.
-  [[nodiscard]] Eigen::MatrixXd driven_covariance(const Fitted& at, const numerics::BatchedDerivatives& found) const;
+  /// Of the free parameters: what the rate of the clock that recorded does to them.
+  [[nodiscard]] Eigen::MatrixXd clock_covariance(const Fitted& at, const numerics::BatchedDerivatives& found) const;
   [[nodiscard]] Eigen::MatrixXd distance_covariance();
   /// Shifts of the free parameters at which the mean cost has risen by more than its roughness.
   [[nodiscard]] Eigen::VectorXd curvature_steps(const Eigen::VectorXd& middle);

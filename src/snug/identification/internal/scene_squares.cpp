@@ -215,7 +215,9 @@ bool SceneSearch::solve_stage(double horizon, bool is_last, Eigen::MatrixXd& cov
   options.max_iterations = std::max(1, experiment_.task().search.local / each);
   options.tolerance =
       (is_last ? kSettledLast : kSettled) / std::max(1.0, total(experiment_, fitted_, at.rows, at.weights));
-  options.fixed_jacobian = each * std::min(until, experiment_.longest()) > kLongSimulation;
+  // Unknown paths cost many simulations for each Jacobian: before the last stage one is enough.
+  options.fixed_jacobian =
+      each * std::min(until, experiment_.longest()) > kLongSimulation || (!is_last && experiment_.path_unknowns() > 0);
   if (options.fixed_jacobian) options.max_iterations = std::max(options.max_iterations, kFixedJacobianSteps);
   const numerics::BatchedResult found = solve_explained(until, prior, options, before, at);
   at.message = found.message;
@@ -347,39 +349,6 @@ std::string SceneSearch::search_squares(double rescue) {
   for (std::size_t k = 0; k < std::min<std::size_t>(3, order.size()) && least > kGoodEnough; ++k)
     go_from(tried[order[k]]);
   return message;
-}
-
-Eigen::MatrixXd SceneSearch::driven_covariance(const Fitted& at, const numerics::BatchedDerivatives& found) const {
-  const Eigen::Index n = at.x.size();
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
-  const auto is_exact = [&](std::size_t m) {
-    return std::ranges::all_of(experiment_.driven_of(m), [](const DrivenPath& path) {
-      return path.position.noise == 0.0 && path.rotation.noise == 0.0;
-    });
-  };
-  if (std::ranges::all_of(fitted_, is_exact)) return covariance;
-  const std::vector<Eigen::VectorXd> points{full(at.x)};
-  const auto residuals_of = [&](int draw) {
-    std::vector<SceneExperiment::Job> jobs;
-    for (std::size_t i = 0; i < fitted_.size(); ++i) jobs.push_back({0, fitted_[i], at.own[i], draw});
-    std::vector<Eigen::VectorXd> residuals;
-    for (MotionError& error : experiment_.evaluate(points, jobs)) {
-      const std::size_t i = residuals.size();
-      weigh(experiment_, fitted_[i], at.rows[i], at.weights[i], error.residuals);
-      residuals.push_back(std::move(error.residuals));
-    }
-    return residuals;
-  };
-  const std::vector<Eigen::VectorXd> smoothed = residuals_of(0);
-  for (int draw = 1; draw <= SceneExperiment::kDraws; ++draw) {
-    std::vector<Eigen::VectorXd> changes = residuals_of(draw);
-    for (std::size_t i = 0; i < changes.size(); ++i)
-      if (changes[i].size() == smoothed[i].size()) changes[i] -= smoothed[i];
-    const Eigen::VectorXd step = numerics::shared_step(found, changes, n);
-    covariance += step * step.transpose() / SceneExperiment::kDraws;
-  }
-  evaluations_ += 1 + SceneExperiment::kDraws;
-  return covariance;
 }
 
 }  // namespace snug::identification::internal

@@ -356,6 +356,32 @@ parameters:
   EXPECT_NEAR(fit.chi2_per_dof, 1.0, 0.2);
 }
 
+TEST_F(SceneFitTest, AClockOfUnknownRateIsInTheErrorsOfSpeedAndFriction) {
+  std::string slides = kThrown;
+  slides.replace(slides.find("[0, 0, 0.12]"), 12, "[0, 0, 0.05]");
+  slides.replace(slides.find("[1.2, 0.3, 0], angular: [0, 0, 1.0]"), 35, "[1.2, 0, 0], angular: [0, 0, 0]");
+  std::ofstream(folder_ / "scene.yaml") << slides;
+  const std::vector<RecordedMotion> motions{record({}, 30)};
+  const auto errors_with = [&](const std::string& rate) {
+    return identify_scene(SceneExperiment(task("clock_rate: " + rate + R"(
+search: {local: 100, held_back: 0}
+parameters:
+  - {name: friction, path: "contacts.pairs[0].friction", value: 0.3, bounds: [0.05, 0.8]}
+  - {name: speed, path: "bodies.parcel.twist.linear[0]", value: 1.2, bounds: [0.5, 2]}
+)"),
+                                          motions, 2))
+        .parameters;
+  };
+  const std::vector<Parameter> known = errors_with("0"), unknown = errors_with("0.02");
+  // Times that are too long by r make speeds too small by r, accelerations by 2 r.
+  const auto added = [&](std::size_t i) {
+    return std::sqrt(std::pow(unknown[i].standard_error, 2) - std::pow(known[i].standard_error, 2));
+  };
+  EXPECT_NEAR(added(0), 2.0 * 0.02 * 0.3, 0.05 * 2.0 * 0.02 * 0.3);
+  EXPECT_NEAR(added(1), 0.02 * 1.2, 0.05 * 0.02 * 1.2);
+  EXPECT_EQ(known[0].value, unknown[0].value);
+}
+
 TEST_F(SceneFitTest, FindsWhereTheRecordedFrameSitsInItsBody) {
   // 9 mm and 1.7 degrees off: without unknowns of its own for them friction would have to explain what it cannot.
   const Pose X_BM{exp_rotation(Vector3(0.02, -0.01, 0.02)), Vector3(0.005, -0.006, 0.004)};
@@ -553,7 +579,7 @@ TEST(ProgramMotion, OfAnAcceleratedBodyIsTheMeanWhereARecordingHasMeans) {
   task.tracked = {{"parcel", {}, {}, {}}};
   task.position_noise = 1e-4;
   task.rotation_position_ratio = 0.1;
-  const internal::OwnValues own(task, {});
+  const internal::OwnValues own(task, 0, {});
   const internal::ComparedSamples samples = internal::compared_samples(task, motion);
   internal::SimulatedMotion simulated = internal::motion_of(run, motion, samples, own);
   const auto error = [&] { return internal::compare(task, motion, samples, simulated, own, 1.0); };
