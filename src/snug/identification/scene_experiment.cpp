@@ -48,7 +48,7 @@ SceneExperiment::SceneExperiment(model::SceneTask task, std::vector<RecordedMoti
       threads_(threads),
       base_(model::load_scenario(task_.scenario)) {
   if (task_.time_step) base_.time_step = *task_.time_step;
-  expect_world_errors();
+  expect_recording_errors();
   for (const model::TaskParameter& parameter : task_.parameters) {
     std::vector<double>& numbers = base_numbers_.emplace_back();
     for (const std::string& path : parameter.paths) {
@@ -120,8 +120,11 @@ void SceneExperiment::check_bodies() const {
     check(object, model::BodyKind::Kinematic, "a kinematic body of the scenario");
 }
 
-void SceneExperiment::expect_world_errors() {
-  if (task_.loss != model::TaskLoss::Squares || task_.own.bias > 0.0 || task_.own.bias_rotation > 0.0) return;
+void SceneExperiment::expect_recording_errors() {
+  constexpr double kQuartz = 5e-5;
+  if (task_.loss != model::TaskLoss::Squares) return;
+  if (task_.program && task_.own.clock_rate == 0.0) task_.own.clock_rate = kQuartz;
+  if (task_.own.bias > 0.0 || task_.own.bias_rotation > 0.0) return;
   for (const RecordedMotion& motion : motions_) {
     task_.own.bias = std::max(task_.own.bias, motion.world_position_error);
     task_.own.bias_rotation = std::max(task_.own.bias_rotation, motion.world_rotation_error);
@@ -336,9 +339,10 @@ internal::SimulatedMotion SceneExperiment::simulate(const model::Scenario& scena
                                                     double until) const {
   const internal::OwnValues own = own_values(job.own);
   std::vector<DrivenPath> driven = driven_of(job.motion, own.path);
-  if (job.clock_rate == 0.0)
+  const double rate = job.clock_rate + own.clock_rate;
+  if (rate == 0.0)
     return internal::simulate_scene(scenario, task_, motions_[job.motion], driven, flights_[job.motion], own, until);
-  const double slower = 1.0 / (1.0 + job.clock_rate);
+  const double slower = 1.0 / (1.0 + rate);
   RecordedMotion motion = motions_[job.motion];
   for (double& time : motion.times) time *= slower;
   for (RecordedBody& body : motion.tracked)
@@ -358,7 +362,7 @@ std::vector<MotionError> SceneExperiment::evaluate_scenes(std::span<const Eigen:
     const auto i = static_cast<std::size_t>(index);
     scenarios[i] = find_scenario(points[i], failures[i]);
   });
-  // What a recording has of its own moves bodies by their start, the delay and the driven bodies' paths only.
+  // What a recording has of its own moves bodies by their start, their clock and the driven bodies' paths only.
   std::map<std::pair<std::pair<std::size_t, std::size_t>, std::vector<double>>, std::size_t> known;
   std::vector<std::size_t> first, simulation_of;  // job of each simulation, simulation of each job
   for (std::size_t j = 0; j < jobs.size(); ++j) {
@@ -366,7 +370,7 @@ std::vector<MotionError> SceneExperiment::evaluate_scenes(std::span<const Eigen:
     const Vector6 start = as_vector(own.start);
     std::vector<double> moving(start.data(), start.data() + start.size());
     moving.push_back(own.delay);
-    moving.push_back(jobs[j].clock_rate);
+    moving.push_back(jobs[j].clock_rate + own.clock_rate);
     moving.insert(moving.end(), own.path.data(), own.path.data() + own.path.size());
     const auto [at, is_new] = known.insert({{{jobs[j].point, jobs[j].motion}, std::move(moving)}, first.size()});
     if (is_new) first.push_back(j);

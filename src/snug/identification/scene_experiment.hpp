@@ -116,8 +116,8 @@ class SceneExperiment {
   [[nodiscard]] MotionError compare(const internal::SimulatedMotion& simulated, std::size_t motion,
                                     const Eigen::VectorXd& own, double until) const;
   void check_bodies() const;
-  /// Unless the task says how far off the recorded world may be, the recordings do.
-  void expect_world_errors();
+  /// Unless the task says how far off the recorded world and the clock of a program's run may be.
+  void expect_recording_errors();
   void find_flights();
   void find_driven();
   /// Fewer modes, combinations that change most of what is compared.

@@ -65,6 +65,7 @@ struct OwnSettings {
   double velocity = 0.0;          ///< m/s, of each axis of the start velocity
   double angular_velocity = 0.0;  ///< rad/s
   double delay = 0.0;             ///< s, recorded times less those of the simulation
+  double clock_rate = 0.0;        ///< relative, of its clock
   double bias = 0.0;              ///< m, of recorded positions, each axis
   double bias_rotation = 0.0;     ///< rad, of recorded poses about the world's origin, each axis
   double frame_position = 0.0;    ///< m, of the recorded frame of each tracked body in that body, each axis
@@ -75,6 +76,7 @@ struct OwnSettings {
     a("velocity", velocity, Range::NotNegative);
     a("angular_velocity", angular_velocity, Range::NotNegative);
     a("delay", delay, Range::NotNegative);
+    a("clock_rate", clock_rate, Range::NotNegative);
     a("bias", bias, Range::NotNegative);
     a("bias_rotation_deg", Degrees{bias_rotation}, Range::NotNegative);
     a("frame_position", frame_position, Range::NotNegative);

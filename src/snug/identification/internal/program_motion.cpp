@@ -175,14 +175,15 @@ ProgramRun run_program(const model::Scenario& scenario, const model::SceneTask& 
 }
 
 double end_of(const model::SceneTask& task, const RecordedMotion& motion, const OwnValues& own, double until) {
-  return std::min(motion.times[sample_count(task, motion) - 1], until) - own.delay + kTail;
+  const double end = std::min(motion.times[sample_count(task, motion) - 1], until);
+  return end - own.late_at(end) + kTail;
 }
 
 SimulatedMotion motion_of(const ProgramRun& run, const RecordedMotion& motion, const ComparedSamples& samples,
                           const OwnValues& own) {
   SimulatedMotion simulated;
   simulated.failure = run.failure;
-  simulated.end = run.end + own.delay;
+  simulated.end = std::isfinite(run.end) ? run.end + own.late_at(run.end) : run.end;
   if (!run.failure.empty()) return simulated;
   for (std::size_t b = 0; b < motion.tracked.size(); ++b) {
     std::vector<record::PoseSample>& poses = simulated.bodies.emplace_back(motion.times.size(), record::lost_pose());
@@ -193,7 +194,7 @@ SimulatedMotion motion_of(const ProgramRun& run, const RecordedMotion& motion, c
       // The mean of what is curved, too: two instants as far from the middle as those averaged are in the mean.
       const double count = averaged_at(motion.tracked[b], k);
       const double spread = motion.period * std::sqrt((count * count - 1.0) / 12.0);
-      const double middle = motion.times[k] - own.delay;
+      const double middle = motion.times[k] - own.late_at(motion.times[k]);
       poses[k] = at(middle - spread);
       if (spread > 0.0) poses[k] = midway(poses[k], at(middle + spread));
     }

@@ -61,6 +61,7 @@ OwnValues::OwnValues(const model::SceneTask& task, Eigen::Index path_unknowns, c
   start.linear = take3(settings.velocity);
   start.angular = take3(settings.angular_velocity);
   if (settings.delay > 0.0) delay = values[at++];
+  if (settings.clock_rate > 0.0) clock_rate = values[at++];
   bias.p = take3(settings.bias);
   bias.R = exp_rotation(take3(settings.bias_rotation));
   for (Pose& X : X_BM) {
@@ -79,6 +80,7 @@ Eigen::VectorXd own_deviation(const model::SceneTask& task, Eigen::Index path_un
   add(settings.velocity, 3);
   add(settings.angular_velocity, 3);
   add(settings.delay, 1);
+  add(settings.clock_rate, 1);
   add(settings.bias, 3);
   add(settings.bias_rotation, 3);
   for (std::size_t i = 0; i < task.tracked.size(); ++i) {

@@ -18,14 +18,17 @@ namespace snug::identification::internal {
 struct OwnValues {
   /// `values`: in the order of own_deviation(); empty: all zero.
   OwnValues(const model::SceneTask& task, Eigen::Index path_unknowns, const Eigen::VectorXd& values);
-  Twist start;             ///< added to the start twist of each tracked body
-  double delay = 0.0;      ///< s
-  Pose bias;               ///< of the simulation's world in the recorded one
-  std::vector<Pose> X_BM;  ///< of each tracked body: the frame that was recorded
-  Eigen::VectorXd path;    ///< how much of each draw of the driven bodies' paths is in them; see moved_towards
+  /// s, what a recording's clock shows at a time less what the simulation's does.
+  [[nodiscard]] double late_at(double time) const { return delay + clock_rate * time; }
+  Twist start;              ///< added to the start twist of each tracked body
+  double delay = 0.0;       ///< s, at time 0
+  double clock_rate = 0.0;  ///< by how much the recording's clock is fast, relative
+  Pose bias;                ///< of the simulation's world in the recorded one
+  std::vector<Pose> X_BM;   ///< of each tracked body: the frame that was recorded
+  Eigen::VectorXd path;     ///< how much of each draw of the driven bodies' paths is in them; see moved_towards
 };
-/// Standard deviations expected of velocity (3), angular velocity (3), delay, bias: position (3), rotation vector (3),
-/// then of each tracked body's frame the same; as far as they are fitted; of the driven bodies' paths last.
+/// Standard deviations expected of velocity (3), angular velocity (3), delay, clock rate, bias: position (3), rotation
+/// vector (3), then of each tracked body's frame the same; as far as they are fitted; of the driven bodies' paths last.
 [[nodiscard]] Eigen::VectorXd own_deviation(const model::SceneTask& task, Eigen::Index path_unknowns);
 /// For each own unknown: the one tracked body of which it changes residuals; none: it may change those of all.
 [[nodiscard]] std::vector<std::optional<std::size_t>> own_bodies(const model::SceneTask& task,

@@ -382,6 +382,19 @@ parameters:
   EXPECT_EQ(known[0].value, unknown[0].value);
 }
 
+TEST_F(SceneFitTest, FindsTheRateOfARecordingsOwnClock) {
+  std::vector<RecordedMotion> motions{record({{"contacts.pairs[0].friction", 0.25}}, 40)};
+  for (double& time : motions[0].times) time *= 1.01;
+  const std::string rest = R"(search: {local: 100, held_back: 0}
+parameters:
+  - {name: friction, path: "contacts.pairs[0].friction", value: 0.3, bounds: [0.05, 0.8], step: 0.002}
+)";
+  const SceneFit fit = identify_scene(SceneExperiment(task("own: {clock_rate: 0.01}\n" + rest), motions, 2));
+  EXPECT_NEAR(fit.values[0], 0.25, 0.005);
+  EXPECT_NEAR(fit.chi2_per_dof, 1.0, 0.2);
+  EXPECT_GT(identify_scene(SceneExperiment(task(rest), motions, 2)).chi2_per_dof, 3.0);
+}
+
 TEST_F(SceneFitTest, FindsWhereTheRecordedFrameSitsInItsBody) {
   // 9 mm and 1.7 degrees off: without unknowns of its own for them friction would have to explain what it cannot.
   const Pose X_BM{exp_rotation(Vector3(0.02, -0.01, 0.02)), Vector3(0.005, -0.006, 0.004)};
