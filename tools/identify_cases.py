@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
 """identify_cases.py: whether numbers that `snug identify scene` calls identified are true, where parts of the task cannot be told or are wrong.
 
-  identify_cases.py [--count 50] [--seed 1] [--folder DIR]
+  identify_cases.py [--count 50] [--seed 1] [--kind KIND] [--rate HZ] [--folder DIR]
 
 Draws tasks whose truth is known: a box that slides against a wall, or is pushed by another, or falls. In some the start values do not reach the wall, or the
 truth does not; two numbers do the same (friction and gravity; a mass that nothing depends on); the recorded world is shifted, turned, late or runs at
-another rate, which nothing in the recordings shows: the task says how well its clock is known; noise is larger than declared; samples jump. Prints a line for each task, and for each kind how many numbers were called identified, and how
-far off they are in their standard errors. Exit code 1 where one called identified is more than three of them off."""
+another rate, which nothing in the recordings shows: the task says how well its clock is known; noise is larger than declared; samples jump. `--kind pusher`
+draws none of these, but a box that a recorded body pushes off centre, both with the demonstrator's noise, in one recording with so many samples a second.
+Prints a line for each task, and for each kind how many numbers were called identified, and how far off they are in their standard errors. Exit code 1 where
+one called identified is more than three of them off."""
 import argparse
+import bisect
 import collections
 import csv
 import json
@@ -54,9 +57,24 @@ NUMBERS = {
     "block_restitution": ("contacts.pairs[2].restitution", 0.0, 0.9),
     "block_mass": ("bodies.block.mass", 0.3, 1.2),
 }
+PUSHED = """name: pushed
+time_step: 0.001
+duration: 1.6
+record_period: 0.001
+materials: [{{name: box}}, {{name: floor}}, {{name: steel}}]
+contacts:
+  pairs:
+    - {{between: [box, floor], friction: {friction}, restitution: 0.0}}
+    - {{between: [box, steel], friction: 0.2, restitution: 0.0}}
+bodies:
+  - {{name: floor, kind: static, size: [4, 2, 0.1], material: floor, pose: {{position: [0, 0, -0.05]}}}}
+  - {{name: pusher, kind: kinematic, size: [0.05, 0.05, 0.05], material: steel, {where}}}
+  - {{name: parcel, size: [0.2, 0.16, 0.1], mass: 0.6, material: box, pose: {{position: [0, 0, 0.05]}}}}
+"""
 PLAIN = ("friction", "speed", "wall", "restitution")
 KINDS = ("plain", "start misses the wall", "truth misses the wall", "friction and gravity", "mass of a sliding box", "pushed block", "shifted world", "turned world",
          "late clock", "clock rate", "more noise", "jumps")
+PUSHER = "pusher"
 
 
 def run(*words):
@@ -120,13 +138,60 @@ def write_recordings(kind, rows, bodies, columns, noise, path, draw):
                         q = [c * q[0] - s * q[3], c * q[1] - s * q[2], c * q[2] + s * q[1], c * q[3] + s * q[0]]
                     jump = draw.uniform(0.02, 0.1) if kind == "jumps" and draw.random() < 0.01 else 0.0
                     x, y, z = (value + draw.gauss(0.0, factor * noise) + jump for value in (x, y, z))
-                    half = [draw.gauss(0.0, factor * math.radians(0.3)) / 2 for _ in range(3)]
-                    w, i, j, k = q
-                    a, b, c = half
-                    q = [w - i * a - j * b - k * c, i + w * a + j * c - k * b, j + w * b + k * a - i * c, k + w * c + i * b - j * a]
-                    length = math.sqrt(sum(value * value for value in q))
-                    cells += [f"{value:.6f}" for value in (x, y, z, *(value / length for value in q))]
+                    cells += [f"{value:.6f}" for value in (x, y, z, *turned(q, factor * math.radians(0.3), draw))]
                 table.writerow([number, f"{t:.6f}", *cells])
+
+
+def turned(q, noise, draw):
+    """A quaternion with noise, rad, about each axis."""
+    w, i, j, k = q
+    a, b, c = (draw.gauss(0.0, noise) / 2 for _ in range(3))
+    q = [w - i * a - j * b - k * c, i + w * a + j * c - k * b, j + w * b + k * a - i * c, k + w * c + i * b - j * a]
+    length = math.sqrt(sum(value * value for value in q))
+    return [value / length for value in q]
+
+
+def make_pushed(folder, draw, rate):
+    """A body that speeds up, pushes a box off centre and brakes, so that the box slides on."""
+    noise, rotation_noise = 1e-4, math.radians(0.1)
+    truth, speed, aside = draw.uniform(0.2, 0.35), draw.uniform(0.35, 0.5), draw.uniform(-0.04, 0.04)
+
+    def ramp(s):
+        return 0.0 if s <= 0.0 else s - 0.5 if s >= 1.0 else s**3 - 0.5 * s**4
+
+    def pusher(t):
+        return [-0.135 + speed * (0.2 * ramp((t - 0.15) / 0.2) - 0.08 * ramp((t - 0.75) / 0.08)), aside, 0.05]
+
+    axes = ("x", "y", "z", "qw", "qx", "qy", "qz")
+    with open(folder / "path.csv", "w", encoding="utf-8") as file:
+        file.write("time,x,y,z,qw,qx,qy,qz\n")
+        for k in range(1601):
+            file.write(f"{1e-3 * k:.3f}," + ",".join(f"{value:.9f}" for value in pusher(1e-3 * k)) + ",1,0,0,0\n")
+    (folder / "truth.yaml").write_text(PUSHED.format(friction=truth, where="path: {file: path.csv}"), encoding="utf-8")
+    (folder / "start.yaml").write_text(PUSHED.format(friction=0.22, where=f"pose: {{position: [-0.135, {aside}, 0.05]}}"), encoding="utf-8")
+    run("simulate", folder / "truth.yaml", "--csv", folder / "truth.csv")
+    rows = recorded(folder / "truth.csv")
+    columns = columns_of(rows[0], "parcel")
+    times = [float(row["t"]) for row in rows]
+    poses = [[float(row[column]) for column in columns] for row in rows]
+    with open(folder / "recorded.csv", "w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(["t", *(f"{body}_{axis}" for body in ("pusher", "parcel") for axis in axes)])
+        for k in range(1, int(times[-1] * rate) + 1):
+            t = k / rate
+            at = min(max(bisect.bisect_left(times, t), 1), len(times) - 1)
+            share = (t - times[at - 1]) / (times[at] - times[at - 1])
+            box = [a + (b - a) * share for a, b in zip(poses[at - 1], poses[at])]
+            cells = []
+            for p, q in ((pusher(t), [1.0, 0.0, 0.0, 0.0]), (box[:3], [box[3], *(-value for value in box[4:])])):
+                cells += [value + draw.gauss(0.0, noise) for value in p] + turned(q, rotation_noise, draw)
+            table.writerow([f"{t:.7f}", *(f"{value:.7f}" for value in cells)])
+    task = {"scenario": "start.yaml", "recordings": ["recorded.csv"], "tracked_objects": [{"body": "parcel", "columns": [f"parcel_{axis}" for axis in axes]}],
+            "kinematic_bodies": [{"body": "pusher", "columns": [f"pusher_{axis}" for axis in axes]}], "start": {"from": "scenario"},
+            "noise": {"position": noise, "rotation_deg": 0.1}, "search": {"local": 30},
+            "parameters": [{"name": "friction", "path": "contacts.pairs[0].friction", "value": 0.22, "bounds": [0.05, 0.8]}]}
+    (folder / "task.yaml").write_text(json.dumps(task, indent=1), encoding="utf-8")
+    return {"friction": truth}
 
 
 def columns_of(header, body):
@@ -170,22 +235,25 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=50)
     parser.add_argument("--seed", type=int, default=1, help="of the first task; the others follow")
+    parser.add_argument("--kind", choices=(*KINDS, PUSHER), help="all tasks are of this kind")
+    parser.add_argument("--rate", type=float, default=360.0, help="samples a second of a pusher's recording")
     parser.add_argument("--folder", type=Path, help="keep the tasks here")
     words = parser.parse_args()
     identified, off, wrong = collections.Counter(), collections.defaultdict(list), []
     with tempfile.TemporaryDirectory() as name:
         base = words.folder or Path(name)
         for seed in range(words.seed, words.seed + words.count):
-            kind = KINDS[seed % len(KINDS)]
+            kind = words.kind or KINDS[seed % len(KINDS)]
             folder = base / f"case-{seed}"
             folder.mkdir(parents=True, exist_ok=True)
-            truth = make_case(kind, folder, random.Random(seed))
+            draw = random.Random(seed)
+            truth = make_pushed(folder, draw, words.rate) if kind == PUSHER else make_case(kind, folder, draw)
             found = json.loads(run("identify", "scene", folder / "task.yaml", "--json").stdout)
             told = []
             for one in found["parameters"]:
                 error = abs(one["value"] - truth[one["name"]])
                 deviations = error / one["standard_error"] if one.get("standard_error") else math.inf
-                told.append(f"{one['name']} {one['verdict']} {deviations:.1f}")
+                told.append(f"{one['name']} {one['verdict']} {deviations:.1f}" + (f" ({error:.4f})" if kind == PUSHER else ""))
                 if one["verdict"] == "identified":
                     identified[kind] += 1
                     off[kind].append(deviations)
@@ -194,7 +262,7 @@ def main():
                                      f"{truth[one['name']]:.5g}, {deviations:.1f} errors off")
             print(f"{seed:4} {kind:24} chi2 {found['chi2_per_dof']:8.2f}  " + ", ".join(told), flush=True)
     print()
-    for kind in KINDS:
+    for kind in [words.kind] if words.kind else KINDS:
         worst = max(off[kind], default=0.0)
         print(f"{kind:24} {identified[kind]:4} identified, at most {worst:.1f} errors off")
     print("\n".join(wrong) or f"no number called identified is more than {ERRORS:.0f} errors off")
