@@ -213,6 +213,32 @@ void check_input(const std::vector<Release>& releases, const DampingOptions& opt
   }
 }
 
+/// Each release by itself, and whether all of them together say the same.
+void add_each_alone(const Problem& problem, const Solution& solution, DampingFit& fit) {
+  double alone = 0.0;
+  int alone_freedom = 0;
+  for (const std::size_t k : all_of(problem)) {
+    const Solution one = solve(problem, {k}, solution.theta, {solution.own[k]});
+    alone += one.chi2;
+    alone_freedom += one.degrees_of_freedom;
+    fit.releases.push_back(describe(problem, k, one, one.own.front()));
+    const double enlarged = std::max(1.0, fit.releases.back().chi2_per_dof);
+    fit.releases.back().parameters =
+        make_parameters(problem.unknowns, one.theta, enlarged * numerics::invert(one.information));
+  }
+  const double more =
+      static_cast<double>(problem.unknowns.scale.size()) * static_cast<double>(problem.releases.size() - 1);
+  const double noise = std::max(1.0, alone / alone_freedom);
+  fit.releases_agree = solution.chi2 - alone <= noise * (more + kRejects * std::sqrt(2.0 * more));
+  if (!fit.releases_agree) {
+    for (Parameter& parameter : fit.parameters) {
+      parameter.verdict = Verdict::NotIdentifiable;
+      parameter.advice =
+          "the releases contradict each other: one damping does not fit them all; identify them one by one";
+    }
+  }
+}
+
 }  // namespace
 
 DampingFit identify_damping(const std::vector<Release>& releases, const DampingOptions& options) {
@@ -256,27 +282,7 @@ DampingFit identify_damping(const std::vector<Release>& releases, const DampingO
     fit.releases.back().parameters = fit.parameters;
     return fit;
   }
-  double alone = 0.0;
-  int alone_freedom = 0;
-  for (const std::size_t k : all) {
-    const Solution one = solve(problem, {k}, solution.theta, {solution.own[k]});
-    alone += one.chi2;
-    alone_freedom += one.degrees_of_freedom;
-    fit.releases.push_back(describe(problem, k, one, one.own.front()));
-    const double enlarged = std::max(1.0, fit.releases.back().chi2_per_dof);
-    fit.releases.back().parameters =
-        make_parameters(problem.unknowns, one.theta, enlarged * numerics::invert(one.information));
-  }
-  const double more = static_cast<double>(problem.unknowns.scale.size()) * static_cast<double>(releases.size() - 1);
-  const double noise = std::max(1.0, alone / alone_freedom);
-  fit.releases_agree = solution.chi2 - alone <= noise * (more + kRejects * std::sqrt(2.0 * more));
-  if (!fit.releases_agree) {
-    for (Parameter& parameter : fit.parameters) {
-      parameter.verdict = Verdict::NotIdentifiable;
-      parameter.advice =
-          "the releases contradict each other: one damping does not fit them all; identify them one by one";
-    }
-  }
+  add_each_alone(problem, solution, fit);
   return fit;
 }
 

@@ -64,6 +64,53 @@ std::string as_text(const SceneError& error) {
   return text;
 }
 
+/// What was done to the recordings, and what they do not tell.
+void add_recordings(const SceneFit& fit, ordered_json& json) {
+  json["refused"] = ordered_json::array();
+  for (const UnknownDirection& direction : fit.unknown) {
+    ordered_json shares = ordered_json::object();
+    for (const auto& [name, share] : direction.shares) shares[name] = share;
+    json["refused"].push_back({{"shares_of_bounds", shares}, {"error_in_bounds", number(direction.error)}});
+  }
+  json["unpredictable"] = ordered_json::array();
+  for (const Unpredictable& one : fit.unpredictable)
+    json["unpredictable"].push_back({{"recording", one.recording}, {"body", one.body}, {"from_s", one.from}});
+  json["rejected_samples"] = ordered_json::array();
+  for (const Rejected& one : fit.rejected)
+    json["rejected_samples"].push_back({{"recording", one.recording}, {"body", one.body}, {"samples", one.samples}});
+  json["smoothed"] = ordered_json::array();
+  for (const Smoothing& one : fit.smoothed)
+    json["smoothed"].push_back({{"recording", one.recording},
+                                {"body", one.body},
+                                {"position_noise_mm", 1e3 * one.position_noise},
+                                {"rotation_noise_deg", 180.0 / std::numbers::pi * one.rotation_noise},
+                                {"position_bandwidth_hz", one.position_bandwidth},
+                                {"rotation_bandwidth_hz", one.rotation_bandwidth}});
+}
+
+/// How errors of the parameters hang together.
+void add_errors(const SceneFit& fit, ordered_json& json) {
+  json["correlations"] = ordered_json::array();
+  for (const Correlated& pair : correlations(fit, 0.0))
+    json["correlations"].push_back({{"a", pair.a}, {"b", pair.b}, {"correlation", pair.value}});
+  if (!fit.profiles.empty()) json["profiles"] = ordered_json::array();
+  for (const Profile& profile : fit.profiles) {
+    ordered_json rises = ordered_json::array();
+    for (const double rise : profile.rises) rises.push_back(number(rise));
+    json["profiles"].push_back({{"name", profile.name},
+                                {"low_95", number(profile.low)},
+                                {"high_95", number(profile.high)},
+                                {"values", profile.values},
+                                {"rises", rises}});
+  }
+  json["covariance"] = ordered_json::array();
+  for (Eigen::Index i = 0; i < fit.covariance.rows(); ++i) {
+    ordered_json row = ordered_json::array();
+    for (Eigen::Index j = 0; j < fit.covariance.cols(); ++j) row.push_back(fit.covariance(i, j));
+    json["covariance"].push_back(row);
+  }
+}
+
 ordered_json as_json(const SceneFit& fit) {
   ordered_json json;
   json["parameters"] = ordered_json::array();
@@ -93,73 +140,16 @@ ordered_json as_json(const SceneFit& fit) {
                                    {"rotation_deg", row.rotation_deg},
                                    {"error_alone", number(row.error_alone)},
                                    {"error_together", number(row.error_together)}});
-  json["refused"] = ordered_json::array();
-  for (const UnknownDirection& direction : fit.unknown) {
-    ordered_json shares = ordered_json::object();
-    for (const auto& [name, share] : direction.shares) shares[name] = share;
-    json["refused"].push_back({{"shares_of_bounds", shares}, {"error_in_bounds", number(direction.error)}});
-  }
-  json["unpredictable"] = ordered_json::array();
-  for (const Unpredictable& one : fit.unpredictable)
-    json["unpredictable"].push_back({{"recording", one.recording}, {"body", one.body}, {"from_s", one.from}});
-  json["rejected_samples"] = ordered_json::array();
-  for (const Rejected& one : fit.rejected)
-    json["rejected_samples"].push_back({{"recording", one.recording}, {"body", one.body}, {"samples", one.samples}});
-  json["smoothed"] = ordered_json::array();
-  for (const Smoothing& one : fit.smoothed)
-    json["smoothed"].push_back({{"recording", one.recording},
-                                {"body", one.body},
-                                {"position_noise_mm", 1e3 * one.position_noise},
-                                {"rotation_noise_deg", 180.0 / std::numbers::pi * one.rotation_noise},
-                                {"position_bandwidth_hz", one.position_bandwidth},
-                                {"rotation_bandwidth_hz", one.rotation_bandwidth}});
-  json["correlations"] = ordered_json::array();
-  for (const Correlated& pair : correlations(fit, 0.0))
-    json["correlations"].push_back({{"a", pair.a}, {"b", pair.b}, {"correlation", pair.value}});
-  if (!fit.profiles.empty()) json["profiles"] = ordered_json::array();
-  for (const Profile& profile : fit.profiles) {
-    ordered_json rises = ordered_json::array();
-    for (const double rise : profile.rises) rises.push_back(number(rise));
-    json["profiles"].push_back({{"name", profile.name},
-                                {"low_95", number(profile.low)},
-                                {"high_95", number(profile.high)},
-                                {"values", profile.values},
-                                {"rises", rises}});
-  }
-  json["covariance"] = ordered_json::array();
-  for (Eigen::Index i = 0; i < fit.covariance.rows(); ++i) {
-    ordered_json row = ordered_json::array();
-    for (Eigen::Index j = 0; j < fit.covariance.cols(); ++j) row.push_back(fit.covariance(i, j));
-    json["covariance"].push_back(row);
-  }
+  add_recordings(fit, json);
+  add_errors(fit, json);
   json["evaluations"] = fit.evaluations;
   json["message"] = fit.message;
   return json;
 }
 
-std::string as_text(const SceneFit& fit) {
-  std::string text =
-      "what one step of each parameter changes at the values found (rms), its standard error alone / with all others\n";
-  for (const Sensitivity& row : fit.sensitivity)
-    text += fmt::format("  {:<20} step {:<9.4g} {:>9.3f} mm {:>9.3f} deg   {:>9.3g} / {:.3g}\n", row.name, row.step,
-                        row.position_mm, row.rotation_deg, row.error_alone, row.error_together);
-  for (const UnknownDirection& direction : fit.unknown) {
-    text += "refused, the recordings do not tell:";
-    for (const auto& [name, share] : direction.shares) text += fmt::format(" {:+.2f} {}", share, name);
-    text += fmt::format(" (of what their bounds span; error {:.2g} of it)\n", direction.error);
-  }
-  text += fmt::format("before: {}\nfitted: {}\n", as_text(fit.before), as_text(fit.fitted));
-  if (fit.held_back.recordings > 0)
-    text +=
-        fmt::format("held back, before: {}\nheld back: {}\n", as_text(fit.held_back_before), as_text(fit.held_back));
-  if (std::isfinite(fit.held_back_error)) text += fmt::format("held-back error: {:.4f} mm\n", fit.held_back_error);
-  constexpr double kSmall = 0.5;
-  text += fmt::format("misfit: chi2 per degree of freedom {:.3g} with the noise of the task{}\n", fit.chi2_per_dof,
-                      fit.chi2_per_dof > kExplained ? ": more than noise, nothing is called identified"
-                      : fit.chi2_per_dof < kSmall   ? ": the noise is less than the task says, and so are the errors"
-                                                    : "");
-  if (fit.is_systematic)
-    text += "residuals hang together: what is left is no noise, and nothing is called identified\n";
+/// Rows that are left out, samples that are rejected, poses that are smoothed.
+std::string recordings_as_text(const SceneFit& fit) {
+  std::string text;
   struct LeftOut {
     double from = 0.0;  // s, the earliest
     int recordings = 0;
@@ -192,7 +182,11 @@ std::string as_text(const SceneFit& fit) {
         180.0 / std::numbers::pi * mean(&Smoothing::rotation_noise), mean(&Smoothing::position_bandwidth),
         mean(&Smoothing::rotation_bandwidth));
   }
-  if (!fit.is_trusted) text += "NOT to be trusted: the simulation misses the recordings by far more than noise\n";
+  return text;
+}
+
+std::string parameters_as_text(const SceneFit& fit) {
+  std::string text;
   for (const Parameter& parameter : fit.parameters) {
     const bool is_fixed = std::isnan(parameter.standard_error) && parameter.advice.starts_with("held fixed");
     text += fmt::format("  {:<20} {:>12.6g} {} {}\n", parameter.name, parameter.value,
@@ -200,6 +194,35 @@ std::string as_text(const SceneFit& fit) {
                         is_fixed ? "" : name_of(parameter.verdict));
     if (!parameter.advice.empty()) text += fmt::format("  {:<20} {}\n", "", parameter.advice);
   }
+  return text;
+}
+
+std::string as_text(const SceneFit& fit) {
+  std::string text =
+      "what one step of each parameter changes at the values found (rms), its standard error alone / with all others\n";
+  for (const Sensitivity& row : fit.sensitivity)
+    text += fmt::format("  {:<20} step {:<9.4g} {:>9.3f} mm {:>9.3f} deg   {:>9.3g} / {:.3g}\n", row.name, row.step,
+                        row.position_mm, row.rotation_deg, row.error_alone, row.error_together);
+  for (const UnknownDirection& direction : fit.unknown) {
+    text += "refused, the recordings do not tell:";
+    for (const auto& [name, share] : direction.shares) text += fmt::format(" {:+.2f} {}", share, name);
+    text += fmt::format(" (of what their bounds span; error {:.2g} of it)\n", direction.error);
+  }
+  text += fmt::format("before: {}\nfitted: {}\n", as_text(fit.before), as_text(fit.fitted));
+  if (fit.held_back.recordings > 0)
+    text +=
+        fmt::format("held back, before: {}\nheld back: {}\n", as_text(fit.held_back_before), as_text(fit.held_back));
+  if (std::isfinite(fit.held_back_error)) text += fmt::format("held-back error: {:.4f} mm\n", fit.held_back_error);
+  constexpr double kSmall = 0.5;
+  text += fmt::format("misfit: chi2 per degree of freedom {:.3g} with the noise of the task{}\n", fit.chi2_per_dof,
+                      fit.chi2_per_dof > kExplained ? ": more than noise, nothing is called identified"
+                      : fit.chi2_per_dof < kSmall   ? ": the noise is less than the task says, and so are the errors"
+                                                    : "");
+  if (fit.is_systematic)
+    text += "residuals hang together: what is left is no noise, and nothing is called identified\n";
+  text += recordings_as_text(fit);
+  if (!fit.is_trusted) text += "NOT to be trusted: the simulation misses the recordings by far more than noise\n";
+  text += parameters_as_text(fit);
   for (const Correlated& pair : correlations(fit, 0.8))
     text += fmt::format("correlation of {} and {}: {:+.3f}\n", pair.a, pair.b, pair.value);
   for (const Profile& profile : fit.profiles)

@@ -94,6 +94,32 @@ std::vector<ReachLayer> make_layers(const model::Container& container, const std
           {"carried over the rim", rim + high, {}}};
 }
 
+/// Of the tool: at each point of each layer, then at each place of a pick, which the map gets.
+std::vector<Pose> add_poses(const model::Scenario& scenario, const std::vector<StandingItem>& items, ReachMap& map) {
+  std::vector<Pose> poses;
+  const Matrix3 R_WE = motion::upright_tool(map.tool_yaw);
+  for (const ReachLayer& layer : map.layers) {
+    for (int row = 0; row < map.rows; ++row) {
+      for (int column = 0; column < map.columns; ++column) {
+        const Vector3 p_TS((column + 0.5) / map.columns * map.inner_size.x() - 0.5 * map.inner_size.x(),
+                           (row + 0.5) / map.rows * map.inner_size.y() - 0.5 * map.inner_size.y(), layer.height);
+        poses.push_back({R_WE, map.X_WT * p_TS + Vector3(0.0, 0.0, scenario.cup.hold_length)});
+      }
+    }
+  }
+  for (const StandingItem& item : items) {
+    const auto known = std::ranges::find_if(
+        map.picks, [&](const ReachPick& pick) { return (pick.p_WS - item.top).norm() < kSamePick; });
+    if (known != map.picks.end()) {
+      ++known->count;
+    } else if (map.picks.size() < kMostPicks) {
+      map.picks.push_back({item.name, 1, item.top, {}});
+      poses.push_back({R_WE, item.top + Vector3(0.0, 0.0, cup::pick_length(scenario.cup))});
+    }
+  }
+  return poses;
+}
+
 }  // namespace
 
 struct PoseReachability::Impl {
@@ -242,28 +268,9 @@ ReachMap make_reach_map(const model::Scenario& scenario, int threads, const Chec
   const std::vector<StandingItem> items = find_items(scenario);
   map.layers = make_layers(*container, items);
 
-  std::vector<Pose> poses;
-  const Matrix3 R_WE = motion::upright_tool(*yaw);
-  for (const ReachLayer& layer : map.layers) {
-    for (int row = 0; row < map.rows; ++row) {
-      for (int column = 0; column < map.columns; ++column) {
-        const Vector3 p_TS((column + 0.5) / map.columns * map.inner_size.x() - 0.5 * map.inner_size.x(),
-                           (row + 0.5) / map.rows * map.inner_size.y() - 0.5 * map.inner_size.y(), layer.height);
-        poses.push_back({R_WE, map.X_WT * p_TS + Vector3(0.0, 0.0, scenario.cup.hold_length)});
-      }
-    }
-  }
-  const std::size_t points = poses.size();
-  for (const StandingItem& item : items) {
-    const auto known = std::ranges::find_if(
-        map.picks, [&](const ReachPick& pick) { return (pick.p_WS - item.top).norm() < kSamePick; });
-    if (known != map.picks.end()) {
-      ++known->count;
-    } else if (map.picks.size() < kMostPicks) {
-      map.picks.push_back({item.name, 1, item.top, {}});
-      poses.push_back({R_WE, item.top + Vector3(0.0, 0.0, cup::pick_length(scenario.cup))});
-    }
-  }
+  const std::size_t points =
+      map.layers.size() * static_cast<std::size_t>(map.rows) * static_cast<std::size_t>(map.columns);
+  const std::vector<Pose> poses = add_poses(scenario, items, map);
   std::vector<PoseReach> found(poses.size());
   parallel_for(static_cast<int>(poses.size()), threads, [&](int i, int) {
     found[static_cast<std::size_t>(i)] = reach.look(poses[static_cast<std::size_t>(i)]);

@@ -203,6 +203,20 @@ Validation validate(const SimulatedRun& run, std::vector<Measurement> repetition
   return validation;
 }
 
+namespace {
+
+/// Cells of a line, without blanks.
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells(1);
+  for (const char c : line) {
+    if (c == ',') cells.emplace_back();
+    if (c != ',' && c != '\r' && c != ' ') cells.back() += c;
+  }
+  return cells;
+}
+
+}  // namespace
+
 std::vector<Window> load_windows(const std::filesystem::path& path, const SimulatedRun& run) {
   const std::string whole = read_file(path, "windows (CSV: body,start_s,end_s)");
   check_utf8(whole, path.string());
@@ -210,14 +224,6 @@ std::vector<Window> load_windows(const std::filesystem::path& path, const Simula
   int line_number = 0;
   const auto fail = [&](const std::string& key, const std::string& got, const std::string& expected) {
     throw InputError(path.string() + ":" + std::to_string(line_number), key, got, expected);
-  };
-  const auto cells_of = [](const std::string& line) {
-    std::vector<std::string> cells(1);
-    for (const char c : line) {
-      if (c == ',') cells.emplace_back();
-      if (c != ',' && c != '\r' && c != ' ') cells.back() += c;
-    }
-    return cells;
   };
   std::vector<std::string> header;
   std::vector<Window> windows;

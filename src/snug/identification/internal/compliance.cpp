@@ -59,38 +59,54 @@ std::vector<CompliancePose> make_compliance_poses(const std::vector<Balance>& ba
   return poses;
 }
 
-LinearEstimate fit_compliance(const std::vector<CompliancePose>& poses, const std::vector<double>& weight,
-                              const NoiseAtS1& noise, const Form& form, const Matrix6& prior) {
+namespace {
+
+/// N theta = b of the poses in use, `of_noise`: what noise adds to N in the mean. It is taken out of b, not of N.
+struct NormalSums {
+  Eigen::MatrixXd N;
+  Eigen::VectorXd b;
+  Eigen::MatrixXd of_noise;
+  double count = 0.0;  ///< of poses
+};
+
+NormalSums normal_sums(const std::vector<CompliancePose>& poses, const std::vector<double>& weight,
+                       const NoiseAtS1& noise, const Form& form, const Matrix6& W) {
   const Eigen::Index n = form.size();
-  const Matrix6 W = weight_of_e(noise);
-  Eigen::MatrixXd N = Eigen::MatrixXd::Zero(n, n);
-  Eigen::VectorXd b = Eigen::VectorXd::Zero(n);
+  NormalSums sums{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), Eigen::MatrixXd(n, n), 0.0};
   Matrix6 cov_gg = Matrix6::Zero(), cov_eg = Matrix6::Zero();  // summed: W and the basis are the same for all poses
-  double count = 0.0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (weight[i] == 0.0) continue;
     const CompliancePose& pose = poses[i];
     const Wide A = columns(form, pose.g);
     const Wide WA = W * A;
-    count += 1.0;
-    N += weight[i] * transposed_product(A, WA);
-    b += weight[i] * transposed_product(WA, pose.e);
+    sums.count += 1.0;
+    sums.N += weight[i] * transposed_product(A, WA);
+    sums.b += weight[i] * transposed_product(WA, pose.e);
     const Matrix6 by_pose = pose.g_by_pose * noise.pose;
     cov_gg += weight[i] *
               (by_pose * pose.g_by_pose.transpose() + pose.g_by_wrench * noise.wrench * pose.g_by_wrench.transpose());
     cov_eg += weight[i] * (pose.e_by_pose * by_pose.transpose());
   }
   // What noise adds to the sums, in the mean.
-  Eigen::MatrixXd of_noise(n, n);
   for (Eigen::Index j = 0; j < n; ++j) {
     const Matrix6 BjW = form.numbers[static_cast<std::size_t>(j)].basis * W;
-    b[j] -= BjW.cwiseProduct(cov_eg.transpose()).sum();
+    sums.b[j] -= BjW.cwiseProduct(cov_eg.transpose()).sum();
     const Matrix6 spread = BjW.transpose() * cov_gg;  // W B_j cov(g)
     for (Eigen::Index k = j; k < n; ++k) {
-      of_noise(j, k) = form.numbers[static_cast<std::size_t>(k)].basis.cwiseProduct(spread.transpose()).sum();
-      of_noise(k, j) = of_noise(j, k);
+      sums.of_noise(j, k) = form.numbers[static_cast<std::size_t>(k)].basis.cwiseProduct(spread.transpose()).sum();
+      sums.of_noise(k, j) = sums.of_noise(j, k);
     }
   }
+  return sums;
+}
+
+}  // namespace
+
+LinearEstimate fit_compliance(const std::vector<CompliancePose>& poses, const std::vector<double>& weight,
+                              const NoiseAtS1& noise, const Form& form, const Matrix6& prior) {
+  const Eigen::Index n = form.size();
+  const Matrix6 W = weight_of_e(noise);
+  const auto [N, b, of_noise, count] = normal_sums(poses, weight, noise, form, W);
   // In units of the prior's width (m/N and rad/(Nm) differ by a thousand), where the prior's information is one.
   const Matrix6 C_prior = inverse(prior);
   const Eigen::VectorXd width = kPriorWidth * form.scale_in(C_prior);
