@@ -19,9 +19,9 @@ export class Channel {
     return this.rows_;
   }
 
-  /** Value, NaN when missing or out of range. */
+  /** Value, NaN when missing or out of range; between two rows that of the first. */
   at(column: number, row: number): number {
-    return row >= 0 && row < this.rows ? this.columns_[column]![row]! : NaN;
+    return row >= 0 && row < this.rows_ ? this.columns_[column]![Math.floor(row)]! : NaN;
   }
 
   column(column: number): Column {
@@ -44,6 +44,24 @@ export class Channel {
     });
     this.rows_ = total;
   }
+}
+
+/** Farther apart than that in one frame a body did not move: it was put elsewhere, m. */
+const JUMP = 0.3;
+
+/** A pose (x, y, z, unit quaternion w, x, y, z) on its way to the next, part 0 to 1 of it; as it is where they are far apart. */
+export function blendPose(pose: Float64Array | number[], next: ArrayLike<number>, part: number): void {
+  if (Math.hypot(next[0]! - pose[0]!, next[1]! - pose[1]!, next[2]! - pose[2]!) > JUMP) return;
+  for (let c = 0; c < 3; ++c) pose[c] = pose[c]! + part * (next[c]! - pose[c]!);
+  let cosine = 0;
+  for (let c = 3; c < 7; ++c) cosine += pose[c]! * next[c]!;
+  const sign = cosine < 0 ? -1 : 1;
+  const angle = Math.acos(Math.min(1, sign * cosine));
+  const sine = Math.sin(angle);
+  const [a, b] = sine < 1e-6 ? [1 - part, part] : [Math.sin((1 - part) * angle) / sine, Math.sin(part * angle) / sine];
+  for (let c = 3; c < 7; ++c) pose[c] = a * pose[c]! + sign * b * next[c]!;
+  const norm = Math.hypot(pose[3]!, pose[4]!, pose[5]!, pose[6]!);
+  for (let c = 3; c < 7; ++c) pose[c] = pose[c]! / norm;
 }
 
 export interface ContactTables {
@@ -69,6 +87,7 @@ export class Replay {
   private readonly bodyPose_: (Channel | undefined)[];
   private readonly bodyPresent_: (Channel | undefined)[];
   private contacts_: ContactTables | null = null;
+  private readonly next_ = new Float64Array(7);
 
   constructor(decoded: Decoded) {
     this.header = decoded.header;
@@ -172,10 +191,29 @@ export class Replay {
     return Math.max(0, low);
   }
 
-  /** Reads a pose with normalised quaternion; false when it is missing. Channels of one row hold for all frames. */
+  /** As frameAt, with the part of the way to the next frame: a time between two frames. */
+  frameBetween(time: number): number {
+    const frame = this.frameAt(time);
+    const from = this.timeOf(frame);
+    const step = this.timeOf(frame + 1) - from;
+    return step > 0 ? frame + Math.min(1 - 1e-9, Math.max(0, (time - from) / step)) : frame;
+  }
+
+  /**
+   * Reads a pose with normalised quaternion; false when it is missing. Channels of one row hold for all frames. Between two
+   * frames (1.25 is a quarter of the way from 1 to 2) positions are linear and turns go at a constant rate the shorter way,
+   * unless a pose is missing or jumps: then it is that of the frame before.
+   */
   pose(channel: Channel | undefined, frame: number, out: Float64Array | number[]): boolean {
     if (!channel || channel.rows === 0) return false;
-    const row = channel.rows === 1 ? 0 : frame;
+    const row = channel.rows === 1 ? 0 : Math.floor(frame);
+    if (!this.poseOfRow(channel, row, out)) return false;
+    const part = channel.rows === 1 ? 0 : frame - row;
+    if (part > 0 && row + 1 < channel.rows && this.poseOfRow(channel, row + 1, this.next_)) blendPose(out, this.next_, part);
+    return true;
+  }
+
+  private poseOfRow(channel: Channel, row: number, out: Float64Array | number[]): boolean {
     for (let c = 0; c < 7; ++c) out[c] = channel.at(c, row);
     const norm = Math.hypot(out[3]!, out[4]!, out[5]!, out[6]!);
     if (!(norm > 0.1) || !Number.isFinite(out[0]! + out[1]! + out[2]!)) return false;

@@ -13,12 +13,14 @@ const FOLDS = 3;
 
 /** X_ES at a frame: the recorded deformation while the cup holds, else the free or evacuated cup. */
 export class CupState {
-  private readonly lowest_: number;
-  constructor(private readonly replay: Replay) {
-    let lowest = 0;
-    const pressure = replay.channel("cup.pressure_gauge");
-    if (pressure) for (const p of pressure.column(0)) if (p < lowest) lowest = p;
-    this.lowest_ = lowest;
+  private lowestSoFar_ = 0;
+  private looked_ = 0; // rows; a run that goes on brings more
+  constructor(private readonly replay: Replay) {}
+
+  private get lowest_(): number {
+    const pressure = this.replay.channel("cup.pressure_gauge");
+    for (const rows = pressure?.rows ?? 0; this.looked_ < rows; ++this.looked_) this.lowestSoFar_ = Math.min(this.lowestSoFar_, pressure!.at(0, this.looked_) || 0);
+    return this.lowestSoFar_;
   }
 
   /** Writes X_ES (7 numbers) and tells whether the cup holds something. */

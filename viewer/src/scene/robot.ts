@@ -98,7 +98,11 @@ export class Robot {
   update(replay: Replay, frame: number): void {
     const joints = replay.channel("joints.position");
     if (!joints) return;
-    const q = [0, 1, 2, 3, 4, 5].map((c) => joints.at(c, frame));
+    const part = frame - Math.floor(frame);
+    const q = [0, 1, 2, 3, 4, 5].map((c) => {
+      const [from, to] = [joints.at(c, frame), part > 0 ? joints.at(c, frame + 1) : NaN];
+      return Number.isFinite(to) ? from + part * (to - from) : from;
+    });
     this.isThere = q.every(Number.isFinite);
     if (!this.isThere) return;
     linkPoints(q).forEach(([a, b], i) => {

@@ -61,6 +61,7 @@ export class View {
   tracePoint: TracePoint | null = null;
   private palette_: Palette;
   private frame_ = 0;
+  private at_ = 0; // the frame, and the part of the way to the next
   private selected_ = -1;
   private isScheduled_ = false;
   private isDisposed_ = false;
@@ -190,9 +191,10 @@ export class View {
     return this.selected_ >= 0 ? this.selected_ : this.replay.attachedBody(this.frame_);
   }
 
-  /** Moves everything to a frame of the recording, exactly as recorded; draws later. */
+  /** Moves everything to a frame of the recording, exactly as recorded (Replay.pose between two frames); draws later. */
   setFrame(frame: number): void {
-    this.frame_ = frame;
+    this.frame_ = Math.floor(frame);
+    this.at_ = frame;
     const { replay } = this;
     this.boxes_.update(replay, frame);
     this.movers_.update(replay, frame);
@@ -212,7 +214,7 @@ export class View {
 
   /** Draws the axes that are asked for and tells what to write. */
   private markFrames(): Label[] {
-    const { replay, options, frame_: frame, selected_: selected, marked } = this;
+    const { replay, options, at_: frame, selected_: selected, marked } = this;
     const at = { frame, X_WE: this.hasTool_ ? this.X_WE_ : null, X_WS: this.hasTool_ && this.cup_ ? this.X_WS_ : null, selected, marked };
     const triads = options.frames ? triadsOf(replay, at) : [];
     this.triads_.update(triads);
@@ -270,7 +272,7 @@ export class View {
 
   render(): void {
     const { options } = this;
-    this.ghost_.update(this.frame_, this.marked, this.boxes_, options.ghost);
+    this.ghost_.update(this.at_, this.marked, this.boxes_, options.ghost);
     this.second_.update(this.replay.timeOf(this.frame_), options.second);
     this.trace_.group.visible = options.trace;
     if (options.trace) this.trace_.update(this.frame_);
@@ -381,7 +383,7 @@ export class View {
     this.renderer_.setPixelRatio(ratio);
     this.renderer_.setSize(this.width_, this.height_);
     this.boxes_.setSelected(this.selected_);
-    this.boxes_.update(this.replay, this.frame_);
+    this.boxes_.update(this.replay, this.at_);
     this.render();
   }
 
@@ -396,6 +398,11 @@ export class View {
     const q = new Quaternion();
     matrix.decompose(p, q, new Vector3());
     return { p: [p.x, p.y, p.z], quat_wxyz: [q.w, q.x, q.y, q.z] };
+  }
+
+  /** Of all that moves, as drawn: two pictures of which these differ show something else. */
+  get poses(): number[] {
+    return [...this.boxes_.mesh.instanceMatrix.array, ...this.X_WS_.elements];
   }
 
   /** Where the lip of the cup is drawn, W. */

@@ -5,10 +5,14 @@ import { Replay } from "../replay/replay";
 import { View } from "../scene/view";
 import { api } from "./api";
 import { make, setChoices } from "./dom";
-import { nextTime } from "./pace";
+import { nextTime, Throttle } from "./pace";
 
 /** Frames whose contacts nobody asks for are many: a page that watches for hours begins anew after so many. */
 const MOST_FRAMES = 60_000;
+/** Pictures a second where a processor draws. */
+const MOST_PICTURES = 40;
+/** ms between two changes of the words beside, which the browser sets anew. */
+const BETWEEN_WORDS = 250;
 
 export class Watch {
   readonly element = make("div", "watch");
@@ -20,7 +24,7 @@ export class Watch {
   private replay_: Replay | null = null;
   private name_ = "";
   private shown_ = 0;
-  private last_ = 0;
+  private pictures_ = 0;
   private isOver_ = false;
   private framedAt_ = 0;
 
@@ -34,6 +38,7 @@ export class Watch {
     new ResizeObserver(() => this.resize()).observe(this.stage_);
     (window as unknown as { snugWatch: object }).snugWatch = {
       frames: () => this.replay_?.frames ?? 0, shown: () => this.shown_, end: () => this.replay_?.end ?? 0, fps: () => this.view_?.fps() ?? 0,
+      pictures: () => this.pictures_, poses: () => this.view_?.poses ?? [],
     };
   }
 
@@ -93,17 +98,34 @@ export class Watch {
     this.stage_.replaceChildren(this.view_.element);
     this.resize();
     this.view_.useCamera(this.camera_.value as "cell");
-    this.shown_ = replay.start;
+    // Marks of hundreds of contacts take more than all the rest; the report has them.
+    for (const option of ["contacts", "forces"] as const) this.view_.setOption(option, false);
+    this.view_.onAfterRender = () => ++this.pictures_;
     this.framedAt_ = replay.frames;
-    this.last_ = performance.now();
-    const view = this.view_;
+    this.play(this.view_, replay);
+  }
+
+  /** Shows what came, at a clock of its own: smooth between frames and between the messages that bring them. */
+  private play(view: View, replay: Replay): void {
+    const throttle = new Throttle(view.isSoftware ? MOST_PICTURES : Infinity);
+    this.shown_ = replay.start;
+    let last = performance.now(), worded = 0, drawn = NaN;
     const tick = (now: number): void => {
       if (view !== this.view_) return;
-      this.shown_ = nextTime(this.shown_, replay.end, Math.min(0.25, Math.max(0, now - this.last_) / 1000));
-      this.last_ = now;
-      if (this.stage_.clientWidth > 0) view.setFrame(replay.frameAt(this.shown_)); // else another tab is shown
-      this.text_.textContent = `${this.shown_.toFixed(1)} s of the plant's time${this.isOver_ && this.shown_ >= replay.end ? "; it is over" : ""}`;
-      if (!this.isOver_ || this.shown_ < replay.end) requestAnimationFrame(tick);
+      this.shown_ = nextTime(this.shown_, replay.end, Math.min(0.25, Math.max(0, now - last) / 1000), !this.isOver_);
+      last = now;
+      const isSeen = this.stage_.clientWidth > 0; // else another tab is shown
+      const isDone = this.isOver_ && this.shown_ >= replay.end;
+      if ((isSeen || isDone) && this.shown_ !== drawn && throttle.may(now)) {
+        view.setFrame(replay.frameBetween(this.shown_));
+        drawn = this.shown_;
+      }
+      if (isDone || now - worded > BETWEEN_WORDS) {
+        worded = now;
+        const behind = replay.end - this.shown_;
+        this.text_.textContent = `${this.shown_.toFixed(1)} s of the plant's time${isDone ? "; it is over" : behind >= 1 ? `; ${behind.toFixed(0)} s behind the run` : ""}`;
+      }
+      if (!isDone || drawn !== this.shown_) requestAnimationFrame(tick);
     };
     requestAnimationFrame(tick);
   }

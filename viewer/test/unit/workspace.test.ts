@@ -8,7 +8,7 @@ import { csvOf } from "../../src/workspace/compare";
 import { plainName } from "../../src/workspace/dom";
 import { fieldsOf } from "../../src/workspace/items";
 import { moved, namesIn, snapped } from "../../src/workspace/placing";
-import { nextTime } from "../../src/workspace/pace";
+import { nextTime, Throttle } from "../../src/workspace/pace";
 import { countLayer } from "../../src/workspace/reach_count";
 import { canEditCup, canEditSize, setCupRadius, setInnerSize } from "../../src/workspace/yaml_edit";
 
@@ -76,11 +76,39 @@ describe("what is reached", () => {
 describe("the clock of a run that is watched", () => {
   it("goes on with the run, catches up with bursts, and never passes the newest frame", () => {
     expect(nextTime(1, 10, 0.033)).toBeGreaterThan(1.033); // nine seconds behind: faster than the clock
-    expect(nextTime(1, 1.01, 0.033)).toBe(1.01);
+    expect(nextTime(1, 1.003, 0.033)).toBe(1.003);
     expect(nextTime(2, 1, 0.033)).toBe(1);
     let shown = 0;
-    for (let k = 0; k < 120; ++k) shown = nextTime(shown, 10, 1 / 30);
-    expect(shown).toBeGreaterThan(9.9); // in four seconds
+    for (let k = 0; k < 180; ++k) shown = nextTime(shown, 10, 1 / 30);
+    expect(shown).toBeGreaterThan(8.9); // in six seconds
+  });
+  it("shows something new in each picture of a burst and of the pause behind it", () => {
+    // 14 s of motion are computed in 2 s, in messages of half a second; then 6 s of planning.
+    let shown = 0, still = 0;
+    for (let k = 1; k <= 8 * 30; ++k) {
+      const next = nextTime(shown, 0.5 * Math.min(28, Math.floor((14 * k) / 30)), 1 / 30);
+      expect(next - shown).toBeLessThan(0.25); // no leaps either: at most seven times as fast
+      if (k > 3 && next === shown) ++still;
+      shown = next;
+    }
+    expect(still).toBe(0);
+    expect(shown).toBeGreaterThan(13);
+  });
+  it("ends with a run that is over, at the run's own pace", () => {
+    let shown = 0;
+    for (let k = 0; k < 16; ++k) shown = nextTime(shown, 0.5, 1 / 30, false);
+    expect(shown).toBe(0.5);
+  });
+  it("takes no more pictures than it may, evenly, and each that it can where it may", () => {
+    const drawn = (most: number): number => {
+      const throttle = new Throttle(most);
+      let count = 0;
+      for (let k = 0; k < 600; ++k) count += Number(throttle.may((1000 * k) / 60));
+      return count / 10;
+    };
+    expect(drawn(Infinity)).toBe(60);
+    expect(drawn(40)).toBeCloseTo(40, 0);
+    expect(drawn(100)).toBe(60);
   });
 });
 
