@@ -111,6 +111,11 @@ std::string boxes_as_yaml(const model::Scenario& drawn_from, const std::vector<m
 
 }  // namespace
 
+int run_items_draw(const ItemsDrawOptions& options) {
+  print_or_write(model::draw_typical_orders(options.wanted), reserve({}, options.output));
+  return kSuccess;
+}
+
 int run_items_read(const ItemsReadOptions& options) {
   std::optional<OutputFile> output = reserve({{"the sheet", options.sheet}}, options.output);
   const std::string text = read_file(options.sheet, "a table of boxes (CSV)");

@@ -7,6 +7,7 @@
 
 #include "apps/snug/command_line/verb.hpp"
 #include "snug/model/items_sheet.hpp"
+#include "snug/model/typical_orders.hpp"
 
 namespace snug::app {
 
@@ -38,7 +39,13 @@ struct ItemsReadOptions {
   std::optional<std::string> output;
 };
 
+struct ItemsDrawOptions {
+  model::TypicalOrders wanted;
+  std::optional<std::string> output;
+};
+
 void add_items(CLI::App& app, Action& action);
+[[nodiscard]] int run_items_draw(const ItemsDrawOptions& options);
 [[nodiscard]] int run_items_read(const ItemsReadOptions& options);
 [[nodiscard]] int run_items_reduce(const ItemsReduceOptions& options);
 [[nodiscard]] int run_items_sequence(const ItemsSequenceOptions& options);

@@ -31,13 +31,37 @@ Examples:
   snug pack scenarios/box-demonstrator.yaml --items sequences.yaml --sequence drawn-1
   snug items sequence scenarios/box-demonstrator.yaml --all --name random --sequences 50 -o random.yaml)";
 
+constexpr const char* kDrawHelp =
+    R"(Ten sizes of folding boxes that shops stock, smaller ones more frequent, 120 to 350 kg/m^3: assumed, to begin with where
+there are no orders yet. An order has a third more or less boxes than wanted. The same seed gives the same orders.
+Example:
+  snug items draw --orders 3 --boxes 20 --seed 1 -o typical-1.csv)";
+
 constexpr const char* kItemsHelp =
     R"(Examples:
+  snug items draw --orders 3 --boxes 20 --seed 1 -o typical-1.csv
   snug items read scenarios/examples/sheet.csv --length-unit cm --mass-unit g -o orders.csv
   snug items reduce scenarios/orders-example.csv --count 4 -o types.yaml
   snug items sequence scenarios/box-demonstrator.yaml --types types.yaml --fill 90 -o sequences.yaml
   snug pack scenarios/box-demonstrator.yaml --items sequences.yaml --sequence drawn-1
-`snug items read --help`, `snug items reduce --help` and `snug items sequence --help` tell more.)";
+`snug items draw --help`, `snug items read --help`, `snug items reduce --help` and `snug items sequence --help` tell more.)";
+
+void add_draw(CLI::App& parent, Action& action) {
+  CLI::App& verb = *parent.add_subcommand("draw", "typical orders, drawn by a seed");
+  const auto options = std::make_shared<ItemsDrawOptions>();
+  verb.add_option("--orders", options->wanted.orders, "how many")
+      ->capture_default_str()
+      ->check(whole(1, model::kMostTypicalOrders))
+      ->type_name("N");
+  verb.add_option("--boxes", options->wanted.boxes, "of an order, on average")
+      ->capture_default_str()
+      ->check(whole(1, model::kMostTypicalBoxes))
+      ->type_name("N");
+  verb.add_option("--seed", options->wanted.seed, "")->capture_default_str()->check(whole(0))->type_name("N");
+  verb.add_option("-o,--output", options->output, "file to write instead of stdout")->type_name("FILE.csv");
+  verb.footer(kDrawHelp);
+  verb.callback([options, &action] { action = [options] { return run_items_draw(*options); }; });
+}
 
 void add_read(CLI::App& parent, Action& action) {
   CLI::App& verb = *parent.add_subcommand("read", "a table of boxes as people keep it, as a CSV of orders");
@@ -123,6 +147,7 @@ void add_sequence(CLI::App& parent, Action& action) {
 void add_items(CLI::App& app, Action& action) {
   CLI::App& verb = *app.add_subcommand("items", "tables of boxes, boxes that stand for many, and sequences of boxes");
   verb.require_subcommand(1);
+  add_draw(verb, action);
   add_read(verb, action);
   add_reduce(verb, action);
   add_sequence(verb, action);
