@@ -1,7 +1,7 @@
 // Measures the page of `snug ui` (`npm run measure:ui`): pictures a second while a run is watched and what serving it takes of the
 // run's CPU; answers of the list with 200 runs beside 1000 orders of 50 boxes, memory; the map of a moved base. SNUG names the program.
 import { execFileSync, spawn } from "node:child_process";
-import { copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { copyFileSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { loadavg, tmpdir } from "node:os";
 import { join } from "node:path";
 import { chromium } from "playwright-core";
@@ -17,6 +17,15 @@ function cpuOf(pid) {
   return (Number(fields[11]) + Number(fields[12])) / TICK;
 }
 const childrenOf = (pid) => execFileSync("ps", ["-o", "pid=", "--ppid", String(pid)], { encoding: "utf8" }).trim().split(/\s+/).filter(Boolean);
+/** s of CPU of all processes of the browser. */
+const cpuOfBrowser = () =>
+  readdirSync("/proc").filter((pid) => /^\d+$/.test(pid)).reduce((sum, pid) => {
+    try {
+      return sum + (/chromium/.test(readFileSync(`/proc/${pid}/cmdline`, "utf8")) ? cpuOf(pid) : 0);
+    } catch {
+      return sum; // it has ended
+    }
+  }, 0);
 const memoryOf = (pid) => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${pid}/status`, "utf8"))[1]) / 1024;
 const median = (values) => values.sort((a, b) => a - b)[Math.floor(values.length / 2)];
 
@@ -57,24 +66,39 @@ await page.getByText(/snug pack cell.yaml --sequence 1/).first().waitFor();
 await page.getByRole("button", { name: "Start", exact: true }).click();
 await page.waitForFunction(() => window.snugWatch.shown() > 1, null, { timeout: 600_000 });
 const run = childrenOf(server.pid)[0];
-const before = { ui: cpuOf(server.pid), run: cpuOf(run) };
+const before = { ui: cpuOf(server.pid), run: cpuOf(run), browser: cpuOfBrowser() };
+// What counts is a picture that was drawn and shows something else than the one before: other poses.
 await page.evaluate(() => {
-  window.pictures = [];
-  let last = performance.now(), shown = window.snugWatch.shown();
+  const seen = (window.seen = { distinct: [], drawn: 0, begin: performance.now() });
+  let last = performance.now(), pictures = window.snugWatch.pictures(), poses = "";
   const tick = (now) => {
-    if (window.snugWatch.shown() !== shown) window.pictures.push(now - last);
-    [last, shown] = [now, window.snugWatch.shown()];
     requestAnimationFrame(tick);
+    if (window.snugWatch.pictures() === pictures) return;
+    seen.drawn += window.snugWatch.pictures() - pictures;
+    pictures = window.snugWatch.pictures();
+    const shown = window.snugWatch.poses().join();
+    if (shown === poses) return;
+    poses = shown;
+    seen.distinct.push(now - last);
+    last = now;
   };
   requestAnimationFrame(tick);
 });
-await page.waitForTimeout(20_000);
-const pictures = await page.evaluate(() => window.pictures);
-if (existsSync(`/proc/${run}`)) {
-  const used = { ui: cpuOf(server.pid) - before.ui, run: cpuOf(run) - before.run };
-  console.log(`CPU of serving it          ${((100 * used.ui) / used.run).toFixed(1)} % of the run's ${used.run.toFixed(1)} s (at most 5)`);
+let used = null; // s, as long as the run goes on
+for (let k = 0; k < 80 && existsSync(`/proc/${run}/exe`); ++k) {
+  await page.waitForTimeout(250);
+  try {
+    used = { ui: cpuOf(server.pid) - before.ui, run: cpuOf(run) - before.run, browser: cpuOfBrowser() - before.browser };
+  } catch {
+    break; // it has ended
+  }
 }
-console.log(`pictures while it packs    ${(1000 / median(pictures)).toFixed(0)} a second (median of ${pictures.length}; at least 30), drawn without a graphics card at 1280x720`);
+const seen = await page.evaluate(() => ({ ...window.seen, seconds: (performance.now() - window.seen.begin) / 1000 }));
+if (used) {
+  console.log(`CPU of serving it          ${((100 * used.ui) / used.run).toFixed(1)} % of the run's ${used.run.toFixed(1)} s (at most 5); the browser's: ${((1000 * used.browser) / seen.drawn).toFixed(0)} ms a picture`);
+}
+const longest = Math.max(...seen.distinct);
+console.log(`pictures while it packs    ${(seen.distinct.length / seen.seconds).toFixed(0)} a second that differ (${seen.drawn} drawn in ${seen.seconds.toFixed(0)} s, median ${median(seen.distinct).toFixed(0)} ms apart, at most ${longest.toFixed(0)}; at least 30), without a graphics card at 1280x720`);
 await ask("POST", "runs/run-1/stop-now");
 await browser.close();
 

@@ -3,11 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "snug/core/input_error.hpp"
 #include "snug/core/text.hpp"
-#include "snug/cup/estimate.hpp"
 #include "snug/workspace/arm_edit.hpp"
 
 namespace snug::workspace {
@@ -15,11 +16,6 @@ namespace {
 
 std::string sheet_key(const cup::CupSheet& sheet) {
   return fmt::format("{:g}-{:g}-{}", 1e3 * sheet.diameter, sheet.bellows, cup::name_of(sheet.lip));
-}
-
-std::string sheet_command(const cup::CupSheet& sheet) {
-  return fmt::format("snug cup estimate --diameter {:g} --bellows {:g} --lip {}", 1e3 * sheet.diameter, sheet.bellows,
-                     cup::name_of(sheet.lip));
 }
 
 }  // namespace
@@ -59,19 +55,53 @@ std::string format_catalogue() {
                     {"bellows", sheet.bellows},
                     {"lip", cup::name_of(sheet.lip)},
                     {"pull_off_N", {estimate.pull_off.low, estimate.pull_off.value, estimate.pull_off.high}},
-                    {"command", sheet_command(sheet)}});
+                    {"command", cup_command(sheet)}});
   }
   return Json{{"containers", std::move(containers)}, {"cups", std::move(cups)}}.dump();
 }
 
-std::string put_cup(const std::string& text, const std::string& name, const std::string& cup) {
-  for (const cup::CupSheet& sheet : cup::cup_catalogue()) {
-    if (sheet_key(sheet) != cup) continue;
-    const std::string block = find_block(cup::format_estimate(sheet, cup::estimate_cup(sheet)), "cup");
-    const std::string comment = "  # " + sheet_command(sheet) + ": an estimate to begin with\n";
-    return replace_block(text, name, "cup", "cup:\n" + comment + block.substr(block.find('\n') + 1));
-  }
-  throw InputError("request", "cup", "'" + printable(cup, 60) + "'", "a cup of `snug cup catalogue`");
+cup::CupSheet find_cup(const std::string& key) {
+  for (const cup::CupSheet& sheet : cup::cup_catalogue())
+    if (sheet_key(sheet) == key) return sheet;
+  throw InputError("request", "cup", "'" + printable(key, 60) + "'", "a cup of `snug cup catalogue`");
+}
+
+cup::CupSheet read_cup_sheet(double diameter_mm, double bellows, const std::string& material, const std::string& lip,
+                             double vacuum_kPa, std::optional<double> stroke_mm) {
+  static constexpr std::array kMaterials = {cup::CupMaterial::Silicone, cup::CupMaterial::Nitrile,
+                                            cup::CupMaterial::Polyurethane, cup::CupMaterial::NaturalRubber};
+  cup::CupSheet sheet;
+  const auto* const found = std::ranges::find(kMaterials, material, [](auto one) { return cup::name_of(one); });
+  if (found == kMaterials.end())
+    throw InputError("request", "material", "'" + printable(material, 40) + "'",
+                     "silicone, nitrile, polyurethane or natural-rubber");
+  if (lip != "plain" && lip != "foam")
+    throw InputError("request", "lip", "'" + printable(lip, 40) + "'", "plain or foam");
+  sheet.diameter = 1e-3 * diameter_mm;
+  sheet.bellows = bellows;
+  sheet.material = *found;
+  sheet.lip = lip == "foam" ? cup::LipKind::Foam : cup::LipKind::Plain;
+  sheet.pressure_gauge = 1e3 * vacuum_kPa;
+  if (stroke_mm) sheet.stroke = 1e-3 * *stroke_mm;
+  return sheet;
+}
+
+std::string cup_command(const cup::CupSheet& sheet) {
+  static const cup::CupSheet usual;
+  std::string command =
+      fmt::format("snug cup estimate --diameter {:g} --bellows {:g}", 1e3 * sheet.diameter, sheet.bellows);
+  if (sheet.material != usual.material) command += fmt::format(" --material {}", cup::name_of(sheet.material));
+  command += fmt::format(" --lip {}", cup::name_of(sheet.lip));
+  if (sheet.pressure_gauge != usual.pressure_gauge)
+    command += fmt::format(" --vacuum {:g}kPa", 1e-3 * sheet.pressure_gauge);
+  if (sheet.stroke) command += fmt::format(" --stroke {:g}", 1e3 * *sheet.stroke);
+  return command;
+}
+
+std::string put_cup(const std::string& text, const std::string& name, const cup::CupSheet& sheet) {
+  const std::string block = find_block(cup::format_estimate(sheet, cup::estimate_cup(sheet)), "cup");
+  const std::string comment = "  # " + cup_command(sheet) + ": an estimate to begin with\n";
+  return replace_block(text, name, "cup", "cup:\n" + comment + block.substr(block.find('\n') + 1));
 }
 
 }  // namespace snug::workspace

@@ -1,10 +1,12 @@
 // Catalogue: containers, pallets and cups by name, to begin a cell with.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "snug/cup/estimate.hpp"
 #include "snug/spatial/pose.hpp"
 
 namespace snug::workspace {
@@ -21,8 +23,15 @@ struct CatalogueContainer {
 /// JSON: `containers` and `cups`, as docs/ui.md says.
 [[nodiscard]] std::string format_catalogue();
 
-/// The cell's text with the cup of the catalogue that has this key ("40-1.5-foam"), as `snug cup estimate` has it.
-/// Throws InputError for others.
-[[nodiscard]] std::string put_cup(const std::string& text, const std::string& name, const std::string& cup);
+/// The cup of the catalogue that has this key ("40-1.5-foam"). Throws InputError for others.
+[[nodiscard]] cup::CupSheet find_cup(const std::string& key);
+/// A data sheet in the words that people choose from. Throws InputError for a material or lip that is none.
+[[nodiscard]] cup::CupSheet read_cup_sheet(double diameter_mm, double bellows, const std::string& material,
+                                           const std::string& lip, double vacuum_kPa, std::optional<double> stroke_mm);
+/// `snug cup estimate` of this sheet.
+[[nodiscard]] std::string cup_command(const cup::CupSheet& sheet);
+/// The cell's text with the cup of this sheet, as `snug cup estimate` has it. Throws InputError for numbers that no cup
+/// has.
+[[nodiscard]] std::string put_cup(const std::string& text, const std::string& name, const cup::CupSheet& sheet);
 
 }  // namespace snug::workspace

@@ -26,7 +26,8 @@ namespace {
 
 constexpr std::string_view kNameRule =
     "at most 100 letters, digits, '.', '_' and '-', a letter or digit first, ending in .yaml or .csv (arms: .urdf, "
-    ".stl, .obj, .dae; files of runs: .jsonl, .txt, .h5, .program.csv, .html, .live, .operator, .png, .glb)";
+    ".stl, .obj, .dae; files of runs: .jsonl, .txt, .h5, .program.csv, .html, .live, .operator, .png, .glb, .script, "
+    ".ros.yaml, .mcap)";
 
 bool is_letter_or_digit(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'); }
 
@@ -47,7 +48,9 @@ Descriptor open_file(int folder, const std::string& name, std::size_t most, stru
 /// The draft beside a file, held by this process alone. A draft that a killed process left is taken over.
 Descriptor open_draft(int folder, const std::string& name, const std::string& draft) {
   Descriptor file(::openat(folder, draft.c_str(), O_WRONLY | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666));
-  if (!file.is_open()) throw InputError(name, "", std::strerror(errno), "a folder that can be written");
+  if (!file.is_open() && (errno == ELOOP || errno == ENXIO || errno == EISDIR))  // a link, a pipe, a folder
+    throw InputError(name, "", draft + ", which is no draft", "a folder without it");
+  if (!file.is_open()) throw OutputError(name, std::strerror(errno));
   struct stat opened {
   }, named{};
   const bool is_ours = ::flock(file.get(), LOCK_EX | LOCK_NB) == 0 && ::fstat(file.get(), &opened) == 0 &&
@@ -76,8 +79,9 @@ FileKind kind_of_name(std::string_view name) {
   const bool is_plain =
       !name.empty() && name.size() <= kLongestName && is_letter_or_digit(name.front()) &&
       std::ranges::all_of(name, [](char c) { return is_letter_or_digit(c) || c == '.' || c == '_' || c == '-'; });
-  static constexpr std::array<std::pair<std::string_view, FileKind>, 18> kEndings = {
-      {{".yaml", FileKind::Scenario},
+  static constexpr std::array<std::pair<std::string_view, FileKind>, 21> kEndings = {
+      {{".ros.yaml", FileKind::Trajectory},
+       {".yaml", FileKind::Scenario},
        {".program.csv", FileKind::Program},
        {".csv", FileKind::Items},
        {".jsonl", FileKind::Log},
@@ -88,6 +92,8 @@ FileKind kind_of_name(std::string_view name) {
        {".operator", FileKind::Operator},
        {".png", FileKind::Picture},
        {".glb", FileKind::Scene},
+       {".script", FileKind::Script},
+       {".mcap", FileKind::Mcap},
        {".urdf", FileKind::Urdf},
        {".stl", FileKind::Mesh},
        {".obj", FileKind::Mesh},
@@ -150,6 +156,8 @@ std::string Folder::read_from(const std::string& name, std::uintmax_t offset, st
   text.resize(done);
   return text;
 }
+
+bool Folder::can_be_written() const { return ::faccessat(folder_.get(), ".", W_OK | X_OK, AT_EACCESS) == 0; }
 
 bool Folder::has(const std::string& name) const {
   (void)kind_of_name(name);
@@ -238,7 +246,8 @@ Descriptor Folder::create(const std::string& name) const {
   (void)kind_of_name(name);
   constexpr int kFlags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_APPEND | O_CLOEXEC;
   Descriptor file(::openat(folder_.get(), name.c_str(), kFlags, 0666));
-  if (!file.is_open()) throw InputError(name, "", std::strerror(errno), "a free name in a folder that can be written");
+  if (!file.is_open() && errno != EEXIST) throw OutputError(name, std::strerror(errno));
+  if (!file.is_open()) throw InputError(name, "", std::strerror(errno), "a free name");
   return file;
 }
 

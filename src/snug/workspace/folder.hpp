@@ -19,19 +19,22 @@ inline constexpr std::size_t kLongestName = 100;                      ///< bytes
 inline constexpr std::size_t kMostEntries = 10000;                    ///< in a list
 
 enum class FileKind {
-  Scenario,   ///< NAME.yaml
-  Items,      ///< NAME.csv, orders
-  Log,        ///< NAME.jsonl, events that `snug pack --log` writes
-  Words,      ///< NAME.txt, the command of a run and what it printed
-  Recording,  ///< NAME.h5
-  Program,    ///< NAME.program.csv
-  Report,     ///< NAME.html
-  Live,       ///< NAME.live, frames that `snug pack --live` writes
-  Operator,   ///< NAME.operator, what who operates says: `snug pack --operator` reads it
-  Picture,    ///< NAME.png
-  Scene,      ///< NAME.glb
-  Urdf,       ///< NAME.urdf, an arm
-  Mesh,       ///< NAME.stl, .obj or .dae, of an arm
+  Scenario,    ///< NAME.yaml
+  Items,       ///< NAME.csv, orders
+  Log,         ///< NAME.jsonl, events that `snug pack --log` writes
+  Words,       ///< NAME.txt, the command of a run and what it printed
+  Recording,   ///< NAME.h5
+  Program,     ///< NAME.program.csv
+  Report,      ///< NAME.html
+  Live,        ///< NAME.live, frames that `snug pack --live` writes
+  Operator,    ///< NAME.operator, what who operates says: `snug pack --operator` reads it
+  Picture,     ///< NAME.png
+  Scene,       ///< NAME.glb
+  Script,      ///< NAME.script, URScript
+  Trajectory,  ///< NAME.ros.yaml
+  Mcap,        ///< NAME.mcap
+  Urdf,        ///< NAME.urdf, an arm
+  Mesh,        ///< NAME.stl, .obj or .dae, of an arm
 };
 
 struct Entry {
@@ -68,13 +71,16 @@ class Folder {
   /// of what was there. Throws InputError: with file, line and key for a text that cannot be used; for a log; for a
   /// file that is being written by another. Throws OutputError when writing fails; then what was there stays.
   void write(const std::string& name, std::string_view text) const;
+  /// Whether this process may make files in it: not where the disk or the folder can be read only.
+  [[nodiscard]] bool can_be_written() const;
   /// As write(), without writing.
   void check(const std::string& name, std::string_view text) const;
   /// Throws InputError where there is no such file.
   void remove(const std::string& name) const;
   /// One line more at the end of what who operates says. Throws InputError where there is no such file.
   void append(const std::string& name, const std::string& line) const;
-  /// A file that was not there, open for writing. Throws InputError where something has that name.
+  /// A file that was not there, open for writing. Throws InputError where something has that name, OutputError where
+  /// the folder cannot be written.
   [[nodiscard]] Descriptor create(const std::string& name) const;
   /// As it was given.
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }

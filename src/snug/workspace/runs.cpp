@@ -17,6 +17,9 @@
 #include <utility>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/output_file.hpp"
+#include "snug/core/read_file.hpp"
+#include "snug/core/temporary_folder.hpp"
 #include "snug/core/text.hpp"
 #include "snug/session/operator.hpp"
 
@@ -27,8 +30,8 @@ namespace {
 
 constexpr std::size_t kLongestWord = 200;      // bytes
 constexpr std::chrono::seconds kPatience(10);  // for a process that was interrupted
-constexpr std::array<const char*, 9> kEndings = {".txt",  ".jsonl",    ".h5",  ".program.csv", ".html",
-                                                 ".live", ".operator", ".png", ".glb"};
+constexpr std::array<const char*, 12> kEndings = {".txt",      ".jsonl", ".h5",  ".program.csv", ".html",     ".live",
+                                                  ".operator", ".png",   ".glb", ".script",      ".ros.yaml", ".mcap"};
 
 void require_kind(const std::string& name, FileKind kind, const char* key, const char* expected) {
   if (kind_of_name(name) != kind) throw InputError("run", key, name, expected);
@@ -59,13 +62,15 @@ bool is_locked(const Folder& folder, const std::string& file) {
   return opened.is_open() && ::flock(opened.get(), LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
 }
 
+bool has_file(const Folder& folder, const std::string& name, struct stat& status) {
+  return ::fstatat(folder.descriptor(), name.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(status.st_mode);
+}
+
 /// Frames for who watched: the recording has them all.
 void drop_live(const Folder& folder, const std::string& name) {
   struct stat status {};
-  const auto is_there = [&](const std::string& file) {
-    return ::fstatat(folder.descriptor(), file.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(status.st_mode);
-  };
-  if (is_there(name + ".h5") && is_there(name + ".live")) ::unlinkat(folder.descriptor(), (name + ".live").c_str(), 0);
+  if (has_file(folder, name + ".h5", status) && has_file(folder, name + ".live", status))
+    ::unlinkat(folder.descriptor(), (name + ".live").c_str(), 0);
 }
 
 /// The last line that begins with "snug: ", without that.
@@ -134,13 +139,47 @@ void check(const RunRequest& request) {
   check_plant(request);
 }
 
-std::vector<std::string> make_command(const std::string& name, const std::string& what) {
+namespace {
+
+/// What a run packed, as words of `snug export`. The line may be anybody's: names are those of files of the folder.
+std::vector<std::string> cell_words(const std::string& packed_by) {
+  const std::vector<std::string> said = words_of(packed_by);
+  std::vector<std::string> words;
+  const std::string scenario = said.size() > 2 ? said[2] : std::string();
+  if (said.size() < 2 || said[0] != "snug" || said[1] != "pack")
+    throw InputError("run", "command", printable(packed_by, 60), "a run whose NAME.txt begins with its command");
+  require_kind(scenario, FileKind::Scenario, "scenario", "a file that ends in .yaml");
+  words.insert(words.end(), {"--scenario", scenario});
+  for (std::size_t i = 3; i + 1 < said.size(); ++i) {
+    if (said[i] != "--items" && said[i] != "--sequence") continue;
+    if (said[i] == "--items") require_kind(said[i + 1], FileKind::Items, "items", "a file that ends in .csv");
+    if (said[i + 1].empty() || said[i + 1].front() == '-')
+      throw InputError("run", "sequence", printable(said[i + 1], kLongestWord), "the name of a sequence or an order");
+    words.insert(words.end(), {said[i], said[i + 1]});
+    ++i;
+  }
+  return words;
+}
+
+}  // namespace
+
+std::vector<std::string> make_command(const std::string& name, const std::string& what, const std::string& packed_by) {
   require_run_name(name);
+  if (what == "urscript" || what == "ros") {
+    const bool is_script = what == "urscript";
+    std::vector<std::string> words = {"snug", "export", name + ".program.csv"};
+    const std::vector<std::string> cell = cell_words(packed_by);
+    words.insert(words.end(), cell.begin(), cell.end());
+    words.insert(words.end(), {"--format", is_script ? "urscript" : "ros-trajectory", "-o",
+                               name + (is_script ? ".script" : ".ros.yaml")});
+    return words;
+  }
   if (what == "picture") return {"snug", "picture", name + ".h5", "-o", name + ".png"};
   if (what == "film")
     return {"snug", "picture", name + ".h5", "--video", name + "-film", "--fps", "10", "--speed", "4"};
-  if (what == "glb") return {"snug", "export", name + ".h5", "--format", "glb", "-o", name + ".glb"};
-  throw InputError("request", "what", printable(what, 40), "picture, film or glb");
+  if (what == "glb" || what == "mcap")
+    return {"snug", "export", name + ".h5", "--format", what, "-o", name + "." + what};
+  throw InputError("request", "what", printable(what, 40), "picture, film, glb, mcap, urscript or ros");
 }
 
 std::vector<std::string> command_of(const RunRequest& request) {
@@ -190,6 +229,28 @@ std::string as_shell_line(const std::vector<std::string>& words) {
   return line;
 }
 
+std::vector<std::string> words_of(std::string_view shell_line) {
+  std::vector<std::string> words;
+  bool is_quoted = false, is_in_word = false;
+  for (std::size_t i = 0; i < shell_line.size(); ++i) {
+    const char c = shell_line[i];
+    if (c == ' ' && !is_quoted) {
+      is_in_word = false;
+      continue;
+    }
+    if (!is_in_word) words.emplace_back();
+    is_in_word = true;
+    if (c == '\'') {
+      is_quoted = !is_quoted;
+    } else if (c == '\\' && !is_quoted && i + 1 < shell_line.size()) {
+      words.back() += shell_line[++i];
+    } else {
+      words.back() += c;
+    }
+  }
+  return words;
+}
+
 Runs::Runs(const Folder& folder, std::filesystem::path program, int at_once)
     : folder_(folder), program_(std::move(program)) {
   for (int i = 0; i < std::max(1, at_once); ++i) workers_.emplace_back([this] { work(); });
@@ -222,7 +283,14 @@ void Runs::start(const RunRequest& request) {
       throw InputError("run", "name", request.name, "a name that is free: there is a file " + request.name + ending);
   }
   Job job{command_of(request), folder_.create(request.name + ".txt")};
-  const Descriptor said = folder_.create(request.name + ".operator");
+  const Descriptor said = [&] {
+    try {
+      return folder_.create(request.name + ".operator");
+    } catch (const std::exception&) {
+      ::unlinkat(folder_.descriptor(), (request.name + ".txt").c_str(), 0);  // no half of a run stays
+      throw;
+    }
+  }();
   if (request.holds) print_to(said.get(), "next hold\n");
   (void)::flock(job.output.get(), LOCK_EX | LOCK_NB);  // nobody else knows of it yet
   print_to(job.output.get(), "$ " + as_shell_line(job.words) + "\n");
@@ -457,28 +525,36 @@ std::vector<RunStatus> Runs::list(std::chrono::milliseconds patience) {
   return all;
 }
 
-void Runs::make_report(const std::string& name) {
+std::string Runs::report(const std::string& name) {
   require_run_name(name);
   const std::lock_guard one_at_a_time(reports_);
   struct stat page {
   }, recording{};
   const bool has_page = ::fstatat(folder_.descriptor(), (name + ".html").c_str(), &page, AT_SYMLINK_NOFOLLOW) == 0;
   if (has_page && !S_ISREG(page.st_mode)) throw InputError(name + ".html", "", "something that is no file", "a report");
-  if (::fstatat(folder_.descriptor(), (name + ".h5").c_str(), &recording, AT_SYMLINK_NOFOLLOW) != 0 ||
-      !S_ISREG(recording.st_mode))
+  if (!has_file(folder_, name + ".h5", recording))
     throw InputError("run", "name", name, "a run with a recording " + name + ".h5: it is written at the end");
-  if (has_page && page.st_mtime >= recording.st_mtime) return;
-  run_to_end({"snug", "report", name + ".h5", "-o", name + ".html"}, "report");
+  if (has_page && page.st_mtime >= recording.st_mtime) return folder_.read(name + ".html");
+  if (folder_.can_be_written()) {
+    run_to_end({"snug", "report", name + ".h5", "-o", name + ".html"}, "report");
+    return folder_.read(name + ".html");
+  }
+  const TemporaryFolder elsewhere("snug-report-");
+  run_to_end({"snug", "report", name + ".h5", "-o", (elsewhere.path() / "report.html").string()}, "report");
+  return read_file(elsewhere.path() / "report.html", "the report that snug report made", kLargestRead);
 }
 
-void Runs::make(const std::string& name, const std::string& what) {
-  const std::vector<std::string> words = make_command(name, what);
+std::vector<std::string> Runs::make(const std::string& name, const std::string& what) {
+  const bool is_program = what == "urscript" || what == "ros";
+  std::vector<std::string> words = make_command(name, what, is_program ? status(name).command : std::string());
   const std::lock_guard one_at_a_time(reports_);
-  struct stat status {};
-  if (::fstatat(folder_.descriptor(), (name + ".h5").c_str(), &status, AT_SYMLINK_NOFOLLOW) != 0 ||
-      !S_ISREG(status.st_mode))
-    throw InputError("run", "name", name, "a run with a recording " + name + ".h5: it is written at the end");
+  const std::string source = name + (is_program ? ".program.csv" : ".h5");
+  struct stat found {};
+  if (!has_file(folder_, source, found))
+    throw InputError("run", "name", name, "a run with a file " + source + ": it is written at the end");
+  if (!folder_.can_be_written()) throw OutputError(words.back(), "this folder can only be read");
   run_to_end(words, "what is made of it");
+  return words;
 }
 
 void Runs::run_to_end(const std::vector<std::string>& words, const char* what) {

@@ -41,10 +41,15 @@ struct RunRequest {
 
 /// "snug", "pack", ... for a shell in the folder; each a word of its own.
 [[nodiscard]] std::vector<std::string> command_of(const RunRequest& request);
-/// "snug", "picture", ... that make `what` of a run: picture, film or glb. Throws InputError for others.
-[[nodiscard]] std::vector<std::string> make_command(const std::string& name, const std::string& what);
+/// "snug", "picture", ... that make `what` of a run: picture, film, glb or mcap; of the command that packed it, as a
+/// shell line: urscript or ros. Throws InputError for others, and where the command names no scenario or items of a
+/// folder.
+[[nodiscard]] std::vector<std::string> make_command(const std::string& name, const std::string& what,
+                                                    const std::string& packed_by = {});
 /// The words as one line that a shell takes apart in the same way.
 [[nodiscard]] std::string as_shell_line(const std::vector<std::string>& words);
+/// The words of such a line.
+[[nodiscard]] std::vector<std::string> words_of(std::string_view shell_line);
 /// Throws InputError for names that kind_of_name() refuses, numbers out of range, and words that are none.
 void check(const RunRequest& request);
 
@@ -97,12 +102,12 @@ class Runs {
   /// By name. A run that cannot be read has its state Failed and says why. Logs are read for `patience` at most; those
   /// of the rest are Unread and read in the background.
   [[nodiscard]] std::vector<RunStatus> list(std::chrono::milliseconds patience = std::chrono::hours(1));
-  /// Makes NAME.html of NAME.h5 with `snug report`, unless it is there and newer. Throws InputError with what the
-  /// command said.
-  void make_report(const std::string& name);
-  /// Makes what can be taken away from NAME.h5 by the command that make_command() says. Throws InputError as
-  /// make_report().
-  void make(const std::string& name, const std::string& what);
+  /// NAME.html, made of NAME.h5 with `snug report` unless it is there and newer; where the folder cannot be written it
+  /// is made elsewhere and not kept. Throws InputError with what the command said.
+  [[nodiscard]] std::string report(const std::string& name);
+  /// Makes what can be taken away of a run by the command that is returned. Throws InputError as report(), OutputError
+  /// where the folder cannot be written.
+  std::vector<std::string> make(const std::string& name, const std::string& what);
 
  private:
   struct Job {

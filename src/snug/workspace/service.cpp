@@ -20,6 +20,7 @@
 #include "snug/model/items_sheet.hpp"
 #include "snug/model/pose_edit.hpp"
 #include "snug/model/scenario.hpp"
+#include "snug/model/typical_orders.hpp"
 #include "snug/replay/cell_form.hpp"
 #include "snug/runs/reach_map.hpp"
 #include "snug/workspace/arm_edit.hpp"
@@ -181,6 +182,21 @@ Json parse_object(const std::string& body, std::size_t most = kLargestJson) {
   return json;
 }
 
+/// What is typed from the data sheet of a cup.
+cup::CupSheet cup_sheet_of(const Json& json) {
+  if (!json.is_object()) throw InputError("request", "sheet", "", "an object");
+  for (const auto& [key, value] : json.items())
+    if (key != "diameter_mm" && key != "bellows" && key != "material" && key != "lip" && key != "vacuum_kPa" &&
+        key != "stroke_mm")
+      throw InputError("request", printable(key, 40), "",
+                       "diameter_mm, bellows, material, lip, vacuum_kPa or stroke_mm");
+  std::optional<double> stroke;
+  if (json.contains("stroke_mm") && !json["stroke_mm"].is_null()) stroke = member(json, "stroke_mm", 0.0);
+  return read_cup_sheet(member(json, "diameter_mm", 0.0), member(json, "bellows", 1.5),
+                        member(json, "material", std::string("silicone")), member(json, "lip", std::string("plain")),
+                        member(json, "vacuum_kPa", -60.0), stroke);
+}
+
 std::vector<std::string> split(std::string_view path) {
   std::vector<std::string> parts(1);
   for (const char c : path) {
@@ -231,6 +247,7 @@ ApiAnswer Service::route(const ApiRequest& request) {
     answer.body = format_catalogue();
     return answer;
   }
+  if (parts.size() == 1 && what == "typical" && is_post) return answer_typical(request.body);
   if (parts.size() == 2 && (what == "cup" || what == "arm") && is_post) return answer_edit(what, name, request.body);
   if (parts.size() == 2 && what == "runs") return answer_run(request, name, "");
   if (parts.size() == 3 && what == "runs") return answer_run(request, name, parts[2]);
@@ -255,6 +272,7 @@ ApiAnswer Service::answer_folder() {
     templates.push_back({{"name", one.name}, {"description", one.description}});
   return as_answer({{"folder", printable_end(folder_.path().string(), kLongestMessage)},
                     {"version", settings_.version},
+                    {"can_be_written", folder_.can_be_written()},
                     {"scenarios", std::move(scenarios)},
                     {"items", std::move(items)},
                     {"arms", std::move(arms)},
@@ -327,6 +345,25 @@ ApiAnswer Service::answer_reach(const std::string& name, const std::string& text
   return answer;
 }
 
+/// Orders drawn by a seed.
+ApiAnswer Service::answer_typical(const std::string& body) {
+  const Json json = parse_object(body);
+  for (const auto& [key, value] : json.items())
+    if (key != "orders" && key != "boxes" && key != "seed")
+      throw InputError("request", printable(key, 40), "", "orders, boxes or seed");
+  const auto count = [&](const char* key, int otherwise) {
+    return static_cast<int>(std::min(member(json, key, static_cast<std::uint64_t>(otherwise)), std::uint64_t{1000000}));
+  };
+  const model::TypicalOrders usual;
+  const model::TypicalOrders wanted{count("orders", usual.orders), count("boxes", usual.boxes),
+                                    member(json, "seed", usual.seed)};
+  const std::string seed = std::to_string(wanted.seed);
+  return as_answer(
+      {{"orders", model::draw_typical_orders(wanted)},
+       {"command", as_shell_line({"snug", "items", "draw", "--orders", std::to_string(wanted.orders), "--boxes",
+                                  std::to_string(wanted.boxes), "--seed", seed, "-o", "typical-" + seed + ".csv"})}});
+}
+
 /// A table of boxes as people keep it, as orders; or what it leaves open.
 ApiAnswer Service::answer_sheet(const std::string& name, const std::string& body) const {
   if (kind_of_name(name) != FileKind::Items) throw InputError("name", "", name, "a name that ends in .csv");
@@ -394,11 +431,18 @@ ApiAnswer Service::answer_move(const std::string& name, const std::string& body)
 ApiAnswer Service::answer_edit(const std::string& what, const std::string& name, const std::string& body) const {
   const Json json = parse_object(body, kLargestMove);
   for (const auto& [key, value] : json.items())
-    if (key != "text" && key != what && (what != "arm" || key != "tool"))
-      throw InputError("request", printable(key, 40), "", what == "arm" ? "text, arm or tool" : "text or cup");
+    if (key != "text" && key != what && key != (what == "arm" ? "tool" : "sheet"))
+      throw InputError("request", printable(key, 40), "", what == "arm" ? "text, arm or tool" : "text, cup or sheet");
   const std::string text = member(json, "text", std::string()), wanted = member(json, what.c_str(), std::string());
   if (kind_of_name(name) != FileKind::Scenario) throw InputError("name", "", name, "a name that ends in .yaml");
-  if (what == "cup") return as_answer({{"text", put_cup(text, name, wanted)}});
+  if (what == "cup") {
+    const auto sheet_json = json.find("sheet");
+    const cup::CupSheet sheet = sheet_json == json.end() ? find_cup(wanted) : cup_sheet_of(*sheet_json);
+    const cup::Estimate pull_off = cup::estimate_cup(sheet).pull_off;
+    return as_answer({{"text", put_cup(text, name, sheet)},
+                      {"command", cup_command(sheet)},
+                      {"pull_off_N", {pull_off.low, pull_off.value, pull_off.high}}});
+  }
   if (kind_of_name(wanted) != FileKind::Urdf) throw InputError("request", "arm", wanted, "a file that ends in .urdf");
   const ArmFacts facts = read_arm_facts(folder_.read(wanted), wanted);
   const std::string tool = member(json, "tool", facts.links.front());
@@ -441,13 +485,11 @@ ApiAnswer Service::answer_run(const ApiRequest& request, const std::string& name
   if (part == "make" && request.method == "POST") {
     const Json json = parse_object(request.body);
     const std::string what = member(json, "what", std::string());
-    runs_.make(name, what);
-    return as_answer({{"made", what}, {"command", as_shell_line(make_command(name, what))}});
+    return as_answer({{"made", what}, {"command", as_shell_line(runs_.make(name, what))}});
   }
   if (part == "report" && is_get) {
-    runs_.make_report(name);
     ApiAnswer answer;
-    answer.body = folder_.read(name + ".html");
+    answer.body = runs_.report(name);
     answer.type = "text/html; charset=utf-8";
     answer.policy = kReportPolicy;
     return answer;

@@ -44,6 +44,7 @@ class Service {
   [[nodiscard]] model::Scenario read_cell(const std::string& name, const std::string& text) const;
   [[nodiscard]] serve::ApiAnswer answer_scene(const std::string& name, const std::string& text) const;
   [[nodiscard]] serve::ApiAnswer answer_reach(const std::string& name, const std::string& text) const;
+  [[nodiscard]] static serve::ApiAnswer answer_typical(const std::string& body);
   [[nodiscard]] serve::ApiAnswer answer_sheet(const std::string& name, const std::string& body) const;
   [[nodiscard]] serve::ApiAnswer answer_move(const std::string& name, const std::string& body) const;
   [[nodiscard]] serve::ApiAnswer answer_edit(const std::string& what, const std::string& name,

@@ -1,7 +1,7 @@
 // Api: the addresses of `snug ui` (docs/ui.md) as functions, their answers as the types that the program writes (api_types.ts).
 
 import type {
-  Catalogue, CellMove, CellScene, Checked, Decisions, EditedText, FolderList, Made, Mistake, ReachMap, Refusal, RunCommands, RunRequest, RunStatus, Said, SheetAnswers, SheetRead, TemplateText, Written,
+  Catalogue, CellMove, CellScene, Checked, CupSheet, Decisions, EditedText, FolderList, Made, Mistake, ReachMap, Refusal, RunCommands, RunRequest, RunStatus, Said, SheetAnswers, SheetRead, TemplateText, TypicalDrawn, TypicalOrders, Written,
 } from "./api_types";
 
 export type * from "./api_types";
@@ -40,13 +40,15 @@ export const api = {
   facts: (name: string) => ask<Checked>("GET", `facts/${as(name)}`),
   check: (name: string, text: string) => ask<Checked>("POST", `check/${as(name)}`, text),
   sheet: (name: string, text: string, answers: SheetAnswers) => ask<SheetRead>("POST", `sheet/${as(name)}`, JSON.stringify({ text, ...answers })),
+  typical: (wanted: TypicalOrders) => ask<TypicalDrawn>("POST", "typical", JSON.stringify(wanted)),
   write: (name: string, text: string) => ask<Written>("PUT", `files/${as(name)}`, text),
   scene: (name: string, text: string) => ask<CellScene>("POST", `scene/${as(name)}`, text),
   reach: (name: string, text: string) => ask<ReachMap>("POST", `reach/${as(name)}`, text),
   move: (name: string, text: string, moves: CellMove[]) => ask<EditedText>("POST", `move/${as(name)}`, JSON.stringify({ text, moves })),
   catalogue: () => ask<Catalogue>("GET", "catalogue"),
   upload: (name: string, bytes: Blob) => ask<Written>("PUT", `files/${as(name)}`, bytes),
-  putCup: (name: string, text: string, cup: string) => ask<EditedText>("POST", `cup/${as(name)}`, JSON.stringify({ text, cup })),
+  putCup: (name: string, text: string, cup: string | CupSheet) =>
+    ask<EditedText>("POST", `cup/${as(name)}`, JSON.stringify(typeof cup === "string" ? { text, cup } : { text, sheet: cup })),
   putArm: (name: string, text: string, arm: string, tool?: string) => ask<EditedText>("POST", `arm/${as(name)}`, JSON.stringify({ text, arm, tool })),
   removeFile: (name: string) => ask<object>("DELETE", `files/${as(name)}`),
   commands: (run: RunRequest) => ask<RunCommands>("POST", "commands", JSON.stringify(run)),

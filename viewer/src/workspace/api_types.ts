@@ -78,6 +78,17 @@ export interface SheetColumn {
   column: string; // empty: passed over
 }
 
+export interface TypicalOrders {
+  orders: number;
+  boxes: number; // of an order, on average
+  seed: number;
+}
+
+export interface TypicalDrawn {
+  orders: string; // a CSV
+  command: string;
+}
+
 export interface SheetRead {
   orders: string; // empty with questions
   columns: SheetColumn[];
@@ -120,6 +131,17 @@ export interface EditedText {
   text: string;
   links?: string[]; // of an arm
   tool?: string;
+  command?: string; // of a cup
+  pull_off_N?: [number, number, number]; // of a cup: low, expected, high
+}
+
+export interface CupSheet {
+  diameter_mm: number;
+  bellows: number; // folds: 0, 1.5 or 2.5
+  material: string;
+  lip: string;
+  vacuum_kPa: number; // gauge, negative
+  stroke_mm?: number | null;
 }
 
 export interface ReachLayer {
@@ -194,6 +216,7 @@ export interface TemplateName {
 export interface FolderList {
   folder: string;
   version: string;
+  can_be_written: boolean; // else nothing can be saved or run there
   scenarios: FolderFile[];
   items: FolderFile[];
   arms: FolderFile[];

@@ -199,6 +199,7 @@ export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void 
     const known = arm && shell.folder.arms.find((one) => one.name === arm.name);
     if (known && known.bytes !== new Blob([arm.text]).size) return shell.tell(`The folder has another ${arm.name}: give it another name, or remove it.`, true);
     if (arm && !known) {
+      if (!shell.folder.can_be_written) return shell.tell(`This template needs ${arm.name} in the folder, which can only be read.`, true);
       if (!(await shell.attempt(() => api.write(arm.name, arm.text)))) return;
       await shell.refresh();
     }

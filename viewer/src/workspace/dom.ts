@@ -35,9 +35,14 @@ export function numberInput(value: number | "", min: number, max: number, step: 
   return input;
 }
 
-/** Choices in the place of what was there; what was chosen stays where it can. */
+/** Choices in the place of what was there; what was chosen stays where it can. The same ones are left alone: a list may be open. */
 export function setChoices(select: HTMLSelectElement, choices: [value: string, text: string][], prefer = ""): void {
   const before = prefer || select.value;
+  const areSame = select.options.length === choices.length && choices.every(([value, text], k) => select.options[k]!.value === value && select.options[k]!.text === text.replace(/\s+/g, " ").trim());
+  if (areSame) {
+    if (choices.some(([value]) => value === before)) select.value = before;
+    return;
+  }
   select.replaceChildren(...choices.map(([value, text]) => {
     const option = make("option", "", text);
     option.value = value;

@@ -6,7 +6,7 @@ import { choiceOf } from "./ask";
 import { BookError, csvOfBook } from "./book";
 import { action, field, later, make, numberInput, plainName, scrollable, setChoices, textInput } from "./dom";
 import type { Shell } from "./shell";
-import { drawSpreads, typicalOrders } from "./typical";
+import { drawSpreads } from "./spreads";
 
 const EXAMPLE = `order,article,length_mm,width_mm,height_mm,mass_kg,count
 mine,coffee,200,150,100,0.5,1
@@ -171,6 +171,16 @@ export function makeItems(shell: Shell): { element: HTMLElement; refresh(): void
     file.value = ""; // the same file can be chosen again
   }
 
+  async function draw(): Promise<void> {
+    const done = await shell.attempt(() => api.typical({ orders: orders.valueAsNumber, boxes: perOrder.valueAsNumber, seed: drawn.valueAsNumber }));
+    if (!done) return;
+    shell.tell("");
+    name.value = `typical-${drawn.value}`;
+    text.value = done.orders;
+    read.textContent = `Drawn by a seed. As a command: ${done.command}`;
+    await check();
+  }
+
   async function open(): Promise<void> {
     if (!saved.value) return;
     const checked = await shell.attempt(() => api.facts(saved.value));
@@ -209,9 +219,7 @@ export function makeItems(shell: Shell): { element: HTMLElement; refresh(): void
       field("Orders", orders), field("Boxes of an order", perOrder), field("Seed", drawn),
       action("Draw orders", () => {
         if (![orders, perOrder, drawn].every((input) => input.checkValidity() && input.value !== "")) return shell.tell("1 to 100 orders of 1 to 200 boxes.", true);
-        name.value = `typical-${drawn.value}`;
-        text.value = typicalOrders({ orders: orders.valueAsNumber, boxes: perOrder.valueAsNumber, seed: drawn.valueAsNumber });
-        return check();
+        return draw();
       })),
     make("div", "bar", field("Name of the items", name), action("Save items", save, "main"), recognise),
     verdict, read, rows, spreads, boxes, field("Text of the items", text, "wide"));

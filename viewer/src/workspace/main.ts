@@ -50,12 +50,16 @@ bar.addEventListener("keydown", (event) => {
 });
 
 const place = make("span", "folder");
+const readOnly = make("p", "trouble", "This folder can only be read: cells, items and runs can be looked at and reports opened, but nothing can be saved or run. For that, copy it and open the copy: snug ui FOLDER");
+readOnly.setAttribute("role", "status");
+readOnly.hidden = true;
 shell.onChange = () => {
   place.textContent = shell.folder.folder;
+  readOnly.hidden = shell.folder.can_be_written;
   place.title = `${shell.folder.folder}, served by snug ${shell.folder.version}`;
   for (const tab of tabs) tab.made.refresh();
 };
 document.getElementById("app")!.append(
-  make("header", "", make("h1", "", "snug"), place, bar), make("main", "", shell.trouble, shell.message, ...tabs.map((tab) => tab.made.element)));
+  make("header", "", make("h1", "", "snug"), place, bar), make("main", "", shell.trouble, readOnly, shell.message, ...tabs.map((tab) => tab.made.element)));
 choose(Math.max(0, tabs.findIndex((tab) => location.hash === `#${slug(tab.name)}`)));
 void shell.refresh().then(() => ((window as unknown as { snugReady: boolean }).snugReady = true));

@@ -1,7 +1,7 @@
 // Parts: what a cell is made of, chosen by name: containers and pallets, cups of the catalogue, an arm whose URDF is dropped.
 
-import { api, type Catalogue, type Facts } from "./api";
-import { action, field, make, plainName, setChoices } from "./dom";
+import { api, type Catalogue, type CupSheet, type Facts } from "./api";
+import { action, field, make, numberInput, plainName, setChoices } from "./dom";
 import type { Shell } from "./shell";
 import { canEditSize, setInnerSize } from "./yaml_edit";
 
@@ -43,6 +43,12 @@ export function makeParts(shell: Shell, cell: CellText): { element: HTMLElement;
   files.accept = ".urdf,.stl,.obj,.dae";
   const said = make("p", "hint");
   said.setAttribute("role", "status");
+  // A cup by its data sheet.
+  const diameter = numberInput(40, 5, 300, "any"), folds = make("select"), material = make("select"), lip = make("select");
+  const vacuum = numberInput(-60, -101, -1, "any"), stroke = numberInput("", 0, 300, "any");
+  setChoices(folds, [["0", "flat"], ["1.5", "1.5"], ["2.5", "2.5"]], "1.5");
+  setChoices(material, ["silicone", "nitrile", "polyurethane", "natural-rubber"].map((one): [string, string] => [one, one.replace("-", " ")]));
+  setChoices(lip, [["plain", "plain"], ["foam", "foam"]]);
   let catalogue: Catalogue | null = null;
 
   async function load(): Promise<void> {
@@ -82,13 +88,21 @@ export function makeParts(shell: Shell, cell: CellText): { element: HTMLElement;
     await cell.set(setInnerSize(cell.text(), now.index, [length, width, one.pallet ? now.height : height]));
   }
 
-  async function chooseCup(): Promise<void> {
-    const one = catalogue?.cups.find(({ key }) => key === cup.value);
-    if (!one) return;
-    const done = await shell.attempt(() => api.putCup(cell.name(), cell.text(), one.key));
+  async function putCup(which: string | CupSheet): Promise<void> {
+    if (cell.text().trim() === "") return shell.tell("Begin from a template first: the cup is put into a cell.", true);
+    const done = await shell.attempt(() => api.putCup(cell.name(), cell.text(), which));
     if (!done) return;
-    said.textContent = `An estimate to begin with: pull-off ${one.pull_off_N[0].toFixed(0)} to ${one.pull_off_N[2].toFixed(0)} N. As a command: ${one.command}`;
+    const pull = done.pull_off_N!;
+    shell.tell("");
+    said.textContent = `An estimate to begin with: pull-off ${pull[0].toFixed(0)} to ${pull[2].toFixed(0)} N. As a command: ${done.command}`;
     await cell.set(done.text);
+  }
+
+  function putSheet(): void | Promise<void> {
+    if (![diameter, vacuum].every((input) => input.value !== "" && input.checkValidity()) || !stroke.checkValidity())
+      return shell.tell("A cup has a diameter of 5 to 300 mm, a vacuum of -101 to -1 kPa and, if the sheet has it, a stroke.", true);
+    return putCup({ diameter_mm: diameter.valueAsNumber, bellows: Number(folds.value), material: material.value, lip: lip.value, vacuum_kPa: vacuum.valueAsNumber,
+      stroke_mm: stroke.value === "" ? null : stroke.valueAsNumber });
   }
 
   async function loadTools(): Promise<void> {
@@ -126,11 +140,14 @@ export function makeParts(shell: Shell, cell: CellText): { element: HTMLElement;
   }
 
   container.addEventListener("change", () => void chooseContainer());
-  cup.addEventListener("change", () => void chooseCup());
+  cup.addEventListener("change", () => cup.value && void putCup(cup.value));
   arm.addEventListener("change", () => void loadTools());
   files.addEventListener("change", () => void take([...(files.files ?? [])]).then(() => (files.value = "")));
+  const sheet = make("details", "", make("summary", "", "Cup by its data sheet"),
+    make("div", "bar", field("Diameter of the lip in mm", diameter), field("Folds", folds), field("Material", material), field("Lip", lip), field("Vacuum in kPa", vacuum), field("Stroke in mm", stroke),
+      action("Use this cup", putSheet)));
   const element = make("fieldset", "numbers edits", make("legend", "", "Parts of the trade"),
-    field("Container of the catalogue", container), field("Cup of the catalogue", cup),
+    field("Container of the catalogue", container), field("Cup of the catalogue", cup), sheet,
     field("Choose a URDF and its meshes", files), field("Arm of the folder", arm), field("Link that carries the tool", tool), action("Use this arm", putArm), said);
   return {
     element,

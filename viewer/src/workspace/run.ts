@@ -58,6 +58,7 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
   const list = scrollable(make("div", "scroll"));
   const scene = new Watch();
   let watched: EventSource | null = null;
+  let stays = false; // what is shown was chosen when it was over: the next run of the queue does not take its place
   let isNameTyped = false;
 
   const request = (): RunRequest => ({
@@ -126,7 +127,8 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
     said.replaceChildren(make("h2", "", `${run.name}: ${run.state}`), make("p", "", describe(run)), bar, boxes);
   }
 
-  function watch(which: string): void {
+  function watch(which: string, isOver = false): void {
+    stays = isOver;
     watched?.close();
     const source = api.events(which);
     watched = source;
@@ -162,10 +164,18 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
       moves_a_robot: run.command.includes(" --yes-this-moves-a-robot "), tempo: word("--tempo") ? Number(word("--tempo")) : null, resumes: run.name }]);
   }
 
+  let listed = "";
+  /** Keeps where the keys are: it is shown anew while runs go on. */
   function showList(): void {
     const runs = shell.folder.runs;
+    const now = JSON.stringify([runs.length, ...runs.slice(0, MOST_SHOWN).map((run) => [run.name, run.state, describe(run), run.can_be_stopped, run.files])]);
+    if (now === listed) return;
+    listed = now;
+    const focused = list.contains(document.activeElement) ? document.activeElement! : null;
+    const rowOf = (element: Element): string => element.closest("tr")?.firstElementChild?.textContent ?? "";
+    const before = focused && [rowOf(focused), focused.textContent];
     const rows = runs.slice(0, MOST_SHOWN).map((run) => {
-      const buttons = make("span", "buttons", action("Show", () => watch(run.name)));
+      const buttons = make("span", "buttons", action("Show", () => watch(run.name, !isGoingOn(run))));
       if (isGoingOn(run)) {
         if (run.can_be_stopped) buttons.append(action("Stop", async () => void (await shell.attempt(() => api.stop(run.name)))));
       } else {
@@ -178,7 +188,17 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
       return [run.name, run.state, describe(run), buttons];
     });
     list.replaceChildren(runs.length === 0 ? make("p", "", "There are no runs yet.") : table(["Run", "State", "Boxes", "Actions"], rows, "runs"));
+    const going = runs.filter((run) => isGoingOn(run) && run.can_be_stopped);
+    if (going.length > 1) {
+      const waiting = going.filter((run) => run.state === "waiting");
+      // Those that wait first: else each that ends would let another one begin.
+      list.prepend(make("div", "bar", make("span", "", `${going.length - waiting.length} running, ${waiting.length} waiting`), action("Stop all", async () => {
+        for (const run of [...waiting, ...going.filter((one) => one.state !== "waiting")]) if (!(await shell.attempt(() => api.stop(run.name)))) break;
+        await shell.refresh();
+      })));
+    }
     if (runs.length > MOST_SHOWN) list.append(make("p", "", `${runs.length - MOST_SHOWN} more runs are not shown.`));
+    if (before) [...list.querySelectorAll("button")].find((one) => rowOf(one) === before[0] && one.textContent === before[1])?.focus();
   }
 
   for (const select of [scenario, items]) select.addEventListener("change", () => void loadSequences());
@@ -221,7 +241,7 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
       if (now !== known) void loadSequences();
       known = now;
       const going = shell.folder.runs.find(isGoingOn);
-      if (going && (!watched || watched.readyState === EventSource.CLOSED)) watch(going.name);
+      if (going && !stays && (!watched || watched.readyState === EventSource.CLOSED)) watch(going.name);
     },
   };
 }

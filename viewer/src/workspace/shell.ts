@@ -6,7 +6,7 @@ import { make } from "./dom";
 const BETWEEN_LOOKS = 1500; // ms, while a run goes on or the program does not answer
 
 export class Shell {
-  folder: FolderList = { folder: "", version: "", scenarios: [], items: [], arms: [], runs: [], templates: [] };
+  folder: FolderList = { folder: "", version: "", can_be_written: true, scenarios: [], items: [], arms: [], runs: [], templates: [] };
   chosen: { scenario?: string; items?: string } = {};
   readonly message = make("p", "message");
   readonly trouble = make("p", "trouble");

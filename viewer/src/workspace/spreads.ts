@@ -1,49 +1,6 @@
-// Typical orders: boxes drawn by a seed as parcels of the trade are, as a CSV to begin with; and how sizes and masses are spread.
+// Spreads: how sizes and masses of boxes are distributed.
 
 import type { ItemLine } from "./api";
-
-/** Uniform in [0, 1), the same on every machine (mulberry32). */
-export function random(seed: number): () => number {
-  let state = seed >>> 0;
-  return () => {
-    state = (state + 0x6d2b79f5) >>> 0;
-    let t = Math.imul(state ^ (state >>> 15), state | 1);
-    t ^= t + Math.imul(t ^ (t >>> 7), t | 61);
-    return ((t ^ (t >>> 14)) >>> 0) / 2 ** 32;
-  };
-}
-
-/** Outer sizes of folding boxes that shops stock, mm; assumed, none is a standard. */
-const SIZES: [number, number, number][] = [
-  [120, 100, 60], [150, 100, 70], [160, 120, 80], [180, 130, 90], [200, 150, 90], [200, 150, 120], [220, 160, 100], [250, 175, 100], [250, 200, 120], [300, 200, 120],
-];
-const DENSITY: [number, number] = [120, 350]; // kg/m^3, of packed goods
-
-export interface Wanted {
-  orders: number;
-  boxes: number; // of an order, on average
-  seed: number;
-}
-
-/** Orders of `boxes` give or take a third; smaller boxes are more frequent. */
-export function typicalOrders({ orders, boxes, seed }: Wanted): string {
-  const draw = random(seed);
-  const masses = SIZES.map(([l, w, h]) => Math.max(0.05, ((l * w * h) / 1e9) * (DENSITY[0] + (DENSITY[1] - DENSITY[0]) * draw())).toFixed(2)); // of an article one
-  const lines = ["order,article,length_mm,width_mm,height_mm,mass_kg,count"];
-  for (let k = 1; k <= orders; ++k) {
-    const count = Math.max(1, Math.round(boxes * (2 / 3 + (2 / 3) * draw())));
-    const kinds = new Map<number, number>();
-    for (let i = 0; i < count; ++i) {
-      const which = Math.min(SIZES.length - 1, Math.floor(SIZES.length * draw() ** 1.5));
-      kinds.set(which, (kinds.get(which) ?? 0) + 1);
-    }
-    for (const which of [...kinds.keys()].sort((a, b) => a - b)) {
-      const [l, w, h] = SIZES[which]!;
-      lines.push(`order-${k},box-${l}x${w}x${h},${l},${w},${h},${masses[which]},${kinds.get(which)}`);
-    }
-  }
-  return lines.join("\n") + "\n";
-}
 
 export interface Histogram {
   low: number;

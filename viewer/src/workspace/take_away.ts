@@ -11,7 +11,20 @@ const FILES: [ending: string, text: string][] = [
   [".operator", "What the operator said"],
   [".txt", "Command and what it printed"],
   [".png", "Picture of its end (PNG)"],
-  [".glb", "The load in 3D (GLB)"],
+  [".glb", "The cell at its end in 3D (GLB)"],
+  [".mcap", "Recording for Foxglove and others (MCAP)"],
+  [".script", "Program for a UR robot (URScript)"],
+  [".ros.yaml", "Trajectories for ROS (YAML)"],
+];
+
+/** What is made at a click: of which file of a run, and how it is spoken of. */
+const MAKES: [what: string, button: string, words: string, source: string][] = [
+  ["picture", "Make a picture", "The picture", ".h5"],
+  ["film", "Make a film (frames)", "The film", ".h5"],
+  ["glb", "Make a GLB", "The GLB", ".h5"],
+  ["mcap", "Make an MCAP", "The MCAP", ".h5"],
+  ["urscript", "Make URScript", "The URScript", ".program.csv"],
+  ["ros", "Make ROS trajectories", "The trajectories", ".program.csv"],
 ];
 
 export function makeTakeAway(shell: Shell): { element: HTMLElement; refresh(): void } {
@@ -22,13 +35,19 @@ export function makeTakeAway(shell: Shell): { element: HTMLElement; refresh(): v
 
   async function makeOf(what: string, words: string): Promise<void> {
     const run = which.value;
-    said.textContent = `${words} is being made …`;
+    const are = words.endsWith("s") ? "are" : "is";
+    said.textContent = `${words} ${are} being made …`;
     const done = await shell.attempt(() => api.make(run, what));
-    said.textContent = done ? `${words} of ${run} is in the folder${what === "film" ? `, frames in ${run}-film` : ""}. As a command: ${done.command}` : "";
+    said.textContent = done ? `${words} of ${run} ${are} in the folder${what === "film" ? `, frames in ${run}-film` : ""}. As a command: ${done.command}` : "";
     await shell.refresh();
   }
 
+  let known = "";
+  /** Only what has changed: where the keys are stays. */
   function show(): void {
+    const now = JSON.stringify([shell.folder.runs.find((one) => one.name === which.value), shell.folder.scenarios, shell.folder.items]);
+    if (now === known) return;
+    known = now;
     const run = shell.folder.runs.find((one) => one.name === which.value);
     if (!run) return place.replaceChildren(make("p", "", "There is no run yet."));
     const has = (ending: string): boolean => run.files.includes(run.name + ending);
@@ -40,6 +59,9 @@ export function makeTakeAway(shell: Shell): { element: HTMLElement; refresh(): v
     }
     // As words of a shell: the files' names have no letters that would need quotes.
     const scenario = /^snug pack (\S+)/.exec(run.command)?.[1] ?? "cell.yaml";
+    const items = / --items (\S+)/.exec(run.command)?.[1] ?? "";
+    if (shell.folder.scenarios.some((one) => one.name === scenario)) links.append(make("li", "", link("Cell (YAML)", api.fileAddress(scenario), scenario)));
+    if (shell.folder.items.some((one) => one.name === items)) links.append(make("li", "", link("Items (CSV)", api.fileAddress(items), items)));
     const more = [" --items", " --sequence"].map((option) => new RegExp(`${option} ('[^']*'|\\S+)`).exec(run.command)?.[0] ?? "").join("");
     const program = `${run.name}.program.csv --scenario ${scenario}${more}`;
     const commands = [
@@ -52,11 +74,9 @@ export function makeTakeAway(shell: Shell): { element: HTMLElement; refresh(): v
       `snug export ${program} --format ros-trajectory -o ${run.name}.ros.yaml`,
     ];
     const makes = make("div", "bar");
-    if (has(".h5") && !isGoingOn(run)) {
-      makes.append(action("Make a picture", () => makeOf("picture", "The picture")), action("Make a film (frames)", () => makeOf("film", "The film")),
-        action("Make a GLB", () => makeOf("glb", "The GLB")), said);
-    }
-    place.replaceChildren(links, makes, make("h2", "", "Commands in the folder"), scrollable(make("pre", "command", commands.join("\n"))),
+    for (const [what, button, words, source] of MAKES) if (has(source) && !isGoingOn(run)) makes.append(action(button, () => makeOf(what, words)));
+    if (makes.childElementCount > 0) makes.append(said);
+    place.replaceChildren(links, makes, make("h2", "", "Commands in the folder"), scrollable(make("pre", "command all", commands.join("\n"))),
       make("p", "hint", "URScript and ROS trajectories need a cell with a robot."));
   }
 

@@ -1,14 +1,14 @@
 // The page of `snug ui` in Chromium, with the program behind it: by visible labels alone, as a person would.
 
 import type { ChildProcess } from "node:child_process";
-import { existsSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
+import { chmodSync, copyFileSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { strToU8, zipSync } from "fflate";
 import type { Browser, Download, Page } from "playwright-core";
 import { afterAll, afterEach, beforeAll, describe, expect, it } from "vitest";
 import { openBrowser } from "../support/browser";
-import { serveWith } from "../support/program";
+import { repository, serveAs, serveWith } from "../support/program";
 
 const ORDERS = "order,article,length_mm,width_mm,height_mm,mass_kg\nmine,<img src=x onerror=alert(1)>,180,120,90,0.4\nmine,B,150,120,90,0.3\n";
 
@@ -56,14 +56,14 @@ async function end(signal: NodeJS.Signals): Promise<void> {
   child = null;
 }
 
-async function openPage(width = 1280, height = 720): Promise<Page> {
+async function openPage(width = 1280, height = 720, at = address): Promise<Page> {
   const context = await browser.newContext({ viewport: { width, height } });
   const page = await context.newPage();
   page.on("pageerror", (error) => errors.push(error.message));
   page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
-  page.on("request", (request) => !/^(blob|data):/.test(request.url()) && !request.url().startsWith(new URL(address).origin) && errors.push(request.url()));
+  page.on("request", (request) => !/^(blob|data):/.test(request.url()) && !request.url().startsWith(new URL(at).origin) && errors.push(request.url()));
   page.on("dialog", (dialog) => void dialog.accept());
-  await page.goto(address);
+  await page.goto(at);
   await page.waitForFunction(() => (window as unknown as { snugReady?: boolean }).snugReady === true);
   return page;
 }
@@ -232,6 +232,40 @@ describe("the page of snug ui", () => {
     await again.getByRole("tab", { name: "Run" }).click();
     await again.getByRole("row", { name: /run-2 done/ }).waitFor(); // it was not killed with the program
     await again.context().close();
+  });
+
+  it("says that a folder can only be read, and leaves nothing there", async () => {
+    const shut = mkdtempSync(join(tmpdir(), "snug-ui-shut-"));
+    for (const ending of [".jsonl", ".h5", ".txt"]) copyFileSync(join(folder, `run-1${ending}`), join(shut, `run-1${ending}`));
+    copyFileSync(join(repository, "scenarios/init/cell.yaml"), join(shut, "cell.yaml"));
+    chmodSync(shut, 0o555);
+    const before = readdirSync(shut);
+    const other = await serveAs(process.getuid!() === 0 ? 65534 : undefined, "ui", shut, "--no-open"); // root may write everywhere
+    const page = await openPage(1280, 720, other.address);
+    await page.getByText("This folder can only be read").waitFor();
+    await page.getByRole("tab", { name: "Cell" }).click();
+    await page.getByLabel("Template").selectOption("ur");
+    await page.getByRole("button", { name: "Begin from the template" }).click();
+    await page.getByText("This template needs ur5e.urdf in the folder, which can only be read.").waitFor();
+    await page.getByLabel("Open a cell of the folder").selectOption("cell.yaml");
+    await page.getByText(/This cell can be used/).waitFor();
+    await page.getByRole("button", { name: "Save cell" }).click();
+    await page.getByText(/^cell.yaml: could not be written: /).waitFor();
+    await page.getByRole("tab", { name: "Run" }).click();
+    await page.getByRole("row", { name: /run-1 done/ }).waitFor();
+    await page.getByRole("button", { name: "Start", exact: true }).click();
+    await page.getByText(/^run-2.txt: could not be written: /).waitFor();
+    await page.getByRole("tab", { name: "Take away" }).click();
+    await page.getByRole("button", { name: "Make a GLB" }).click();
+    await page.getByText("run-1.glb: could not be written: this folder can only be read").waitFor();
+    const report = await fetch(`${new URL(other.address).origin}/api/1/runs/run-1/report${new URL(other.address).search}`);
+    expect(await report.text()).toContain('id="snug-recording-0"'); // made elsewhere, not kept
+    expect(readdirSync(shut)).toEqual(before);
+    expect(errors.filter((text) => !/507/.test(text))).toEqual([]);
+    await page.context().close();
+    other.child.kill("SIGTERM");
+    chmodSync(shut, 0o755);
+    rmSync(shut, { recursive: true });
   });
 
   it("answers who knows the token only, and nothing out of the folder", async () => {

@@ -16,8 +16,11 @@ export function snug(...words: string[]): string {
 }
 
 /** Starts a program that serves, and waits for the address that it tells. */
-export async function serveWith(...words: string[]): Promise<{ child: ChildProcess; address: string }> {
-  const child = spawn(program, words, { stdio: ["ignore", "ignore", "pipe"] });
+export const serveWith = (...words: string[]): Promise<{ child: ChildProcess; address: string }> => serveAs(undefined, ...words);
+
+/** As somebody else; undefined: as who runs the tests. */
+export async function serveAs(uid: number | undefined, ...words: string[]): Promise<{ child: ChildProcess; address: string }> {
+  const child = spawn(program, words, { stdio: ["ignore", "ignore", "pipe"], uid });
   let told = "";
   const address = await new Promise<string>((resolve, reject) => {
     child.on("exit", (code) => reject(new Error(`snug ${words.join(" ")} ended with ${code}: ${told}`)));

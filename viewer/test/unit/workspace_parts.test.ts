@@ -1,14 +1,14 @@
-// What the page of `snug ui` computes itself: costs, workbooks, typical orders, orders of who operates, dropped files.
+// What the page of `snug ui` computes itself: costs, workbooks, spreads, orders of who operates, dropped files.
 
 import { describe, expect, it } from "vitest";
 import type { CellPart, Decision, Decisions, RunStatus } from "../../src/workspace/api";
-import { costOfABox, csvOf, describeSpread, NO_COSTS, pageOf, spreadsOf, worstOf } from "../../src/workspace/compare";
+import { costOfABox, csvOf, describeSpread, isFair, NO_COSTS, pageOf, rowsOf, spreadsOf, stripsOf, variantsOf, worstOf } from "../../src/workspace/compare";
 import { outcomeRows, quoted } from "../../src/workspace/decisions";
 import { splitDropped } from "../../src/workspace/parts";
 import { boxesOf } from "../../src/workspace/plan_drawing";
 import { boxesInWorld, inWorld } from "../../src/workspace/plan_stage";
 import { crc32, workbook, zip } from "../../src/workspace/spreadsheet";
-import { histogram, typicalOrders } from "../../src/workspace/typical";
+import { histogram } from "../../src/workspace/spreads";
 
 const run = (name: string, more: Partial<RunStatus> = {}): RunStatus => ({
   name, state: "done", can_be_stopped: false, command: `snug pack ${name}.yaml`, message: "", sequence: "mine", plant: "p", items: 10, done: 10, packed: 8, lost: 1,
@@ -16,10 +16,13 @@ const run = (name: string, more: Partial<RunStatus> = {}): RunStatus => ({
 
 describe("costs of runs", () => {
   it("are those of the cell's time, of what is lost and of what is left", () => {
-    expect(costOfABox(run("a"), { hour: 40, lost: 16, left: 2 })).toBe((40 + 16 + 2) / 8);
-    expect(costOfABox(run("a"), NO_COSTS)).toBeNull();
-    expect(costOfABox(run("a", { packed: 0 }), { hour: 40, lost: 0, left: 0 })).toBeNull();
+    expect(costOfABox([run("a")], { hour: 40, lost: 16, left: 2 })).toBe((40 + 16 + 2) / 8);
+    expect(costOfABox([run("a")], NO_COSTS)).toBeNull();
+    expect(costOfABox([run("a", { packed: 0 })], { hour: 40, lost: 0, left: 0 })).toBeNull();
     expect(csvOf([run("a")], { hour: 40, lost: 16, left: 2 })).toContain("Cost of a packed box,7.250\r\n");
+  });
+  it("are those of all runs of a variant together", () => {
+    expect(costOfABox([run("a"), run("b", { packed: 2, lost: 0, done: 2, time: 1800 })], { hour: 40, lost: 16, left: 2 })).toBe((60 + 16 + 2) / 10);
   });
   it("leave the worst cases first and the spread beside them", () => {
     const runs = [run("a", { percent: 70 }), run("b", { lost: 3 }), run("c", { percent: 50 }), run("d", { state: "running", lost: 9 })];
@@ -30,6 +33,38 @@ describe("costs of runs", () => {
     const page = pageOf([run("<script>alert(1)</script>", { sequence: "\"><img src=x onerror=y>" })], { hour: 1, lost: 0, left: 0 }, "<b>");
     expect(page).not.toMatch(/<script|<img|<b>/);
     expect(page).toContain("default-src 'none'");
+  });
+});
+
+describe("variants", () => {
+  const packed = (cell: string, plant: number, more: Partial<RunStatus> = {}, options = ""): RunStatus =>
+    run(`${cell}-${plant}${options}`, { command: `snug pack ${cell}.yaml --items 'my items.csv' --sequence mine --plant-seed ${plant}${options} --log x.jsonl`, plant: `seed ${plant}`, ...more });
+  const runs = [
+    packed("cup40", 1, { percent: 50, packed: 4, time: 1800 }), packed("cup70", 1), packed("cup40", 2, { percent: 60, packed: 6, time: 1800, lost: 0 }), packed("cup70", 2),
+    packed("cup70", 1, {}, " --tempo 0.8"), packed("cup70", 3, { state: "running" }), packed("cup70", 4, { state: "ended early" }),
+  ];
+  it("are runs of the same cell, items and tempo, whatever their order and plant", () => {
+    expect(variantsOf(runs).map(({ name, runs: of }) => [name, of.length])).toEqual([
+      ["cup40.yaml, my items.csv", 2], ["cup70.yaml, my items.csv", 2], ["cup70.yaml, my items.csv, tempo 0.8", 1]]);
+    const rows = new Map(rowsOf(runs, { hour: 10, lost: 0, left: 0 }, true).map(([label, ...cells]) => [label, cells]));
+    expect(rows.get("Runs")).toEqual(["2", "2", "1"]);
+    expect(rows.get("Cell")![0]).toBe("cup40.yaml");
+    expect(rows.get("Tempo")).toEqual(["1", "1", "0.8"]);
+    expect(rows.get("Filling in %")![0]).toBe("55.0");
+    expect(rows.get("Least filling in %")![0]).toBe("50.0");
+    expect(rows.get("Boxes an hour")![0]).toBe("10");
+    expect(rows.get("Cost of a packed box")![0]).toBe("1.000");
+    expect(rows.get("Plant")![0]).toBe("seed 1; seed 2");
+  });
+  it("are spread on one scale, and are fair where all packed the same", () => {
+    const strips = stripsOf(runs.slice(0, 4), true)[0]!.strips;
+    expect(strips.map(({ name }) => name)).toEqual(["cup40.yaml, my items.csv", "cup70.yaml, my items.csv"]);
+    expect(strips[0]!.svg).toContain('cx="10.0"');
+    expect(strips[1]!.svg).toMatch(/cx="290.0".*cx="290.0"/);
+    expect(isFair(variantsOf(runs.slice(0, 4)))).toBe(true);
+    expect(isFair(variantsOf(runs))).toBe(false);
+    expect(pageOf(runs, NO_COSTS, "x", true)).toContain("<th>cup70.yaml, my items.csv</th>");
+    expect(pageOf([packed("<script>", 1)], NO_COSTS, "x", true)).not.toContain("<script");
   });
 });
 
@@ -61,18 +96,7 @@ describe("workbooks", () => {
   });
 });
 
-describe("typical orders", () => {
-  it("are the same by the same seed, and of one mass for one article", () => {
-    const text = typicalOrders({ orders: 5, boxes: 20, seed: 7 });
-    expect(typicalOrders({ orders: 5, boxes: 20, seed: 7 })).toBe(text);
-    expect(typicalOrders({ orders: 5, boxes: 20, seed: 8 })).not.toBe(text);
-    const masses = new Map<string, string>();
-    for (const line of text.trim().split("\n").slice(1)) {
-      const cells = line.split(",");
-      expect(masses.get(cells[1]!) ?? cells[5]).toBe(cells[5]);
-      masses.set(cells[1]!, cells[5]!);
-    }
-  });
+describe("spreads", () => {
   it("are counted into parts of their range", () => {
     expect(histogram([[1, 2], [3, 1], [5, 1]], 2)).toEqual({ low: 1, high: 5, counts: [2, 2] });
     expect(histogram([[4, 3]]).counts).toEqual([3]);

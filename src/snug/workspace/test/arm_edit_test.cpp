@@ -127,10 +127,22 @@ TEST(ArmEdit, BlocksEndBeforeTheCommentsOfTheNext) {
 
 TEST(Catalogue, EveryCupIsOneThatACellCanHave) {
   const std::string cell = read_file(kScenarios / "init/cell.yaml", "a cell");
-  const std::string text = put_cup(cell, "cell.yaml", "40-1.5-foam");
+  const std::string text = put_cup(cell, "cell.yaml", find_cup("40-1.5-foam"));
   EXPECT_DOUBLE_EQ(model::parse_scenario(text, "cell.yaml").cup.lip_radius, 0.02);
   EXPECT_NE(text.find("snug cup estimate --diameter 40 --bellows 1.5 --lip foam"), std::string::npos);
-  EXPECT_THROW((void)put_cup(cell, "cell.yaml", "41-1.5-foam"), InputError);
+  EXPECT_THROW((void)find_cup("41-1.5-foam"), InputError);
+  const cup::CupSheet sheet = read_cup_sheet(42.0, 2.5, "nitrile", "plain", -55.0, 9.0);
+  const std::string typed = put_cup(cell, "cell.yaml", sheet);
+  EXPECT_NE(typed.find("# snug cup estimate --diameter 42 --bellows 2.5 --material nitrile --lip plain --vacuum -55kPa "
+                       "--stroke 9: an estimate"),
+            std::string::npos);
+  EXPECT_NEAR(model::parse_scenario(typed, "cell.yaml").cup.lip_radius, 0.021, 1e-9);
+  EXPECT_THROW((void)read_cup_sheet(42.0, 2.5, "wood", "plain", -55.0, {}), InputError);
+  EXPECT_THROW((void)read_cup_sheet(42.0, 2.5, "nitrile", "none", -55.0, {}), InputError);
+  EXPECT_THROW((void)put_cup(cell, "cell.yaml", read_cup_sheet(42.0, 2.0, "nitrile", "plain", -55.0, {})), InputError);
+  EXPECT_THROW((void)put_cup(cell, "cell.yaml", read_cup_sheet(4200.0, 1.5, "nitrile", "plain", -55.0, {})),
+               InputError);
+  EXPECT_THROW((void)put_cup(cell, "cell.yaml", read_cup_sheet(42.0, 1.5, "nitrile", "plain", 55.0, {})), InputError);
   for (const CatalogueContainer& one : container_catalogue()) EXPECT_EQ(one.is_pallet, one.height == 0.0) << one.name;
 }
 

@@ -6,12 +6,14 @@
 #include <stdlib.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
 #include <iterator>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/output_file.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/core/rng.hpp"
 
@@ -193,6 +195,17 @@ TEST_F(FolderTest, KeepsTheModeOfAFileThatIsReplaced) {
   EXPECT_EQ(fs::status(path_ / "a.csv").permissions(), fs::perms::owner_read | fs::perms::owner_write);
   folder.remove("a.csv");
   EXPECT_TRUE(folder.list().empty());
+}
+
+TEST_F(FolderTest, TellsWhetherItCanBeWritten) {
+  EXPECT_TRUE(Folder(path_).can_be_written());
+  const Folder system("/proc/self");  // where not even root makes files
+  EXPECT_THROW((void)system.create("a.txt"), OutputError);
+  EXPECT_THROW(system.write("a.csv", kOrders), OutputError);
+  fs::permissions(path_, fs::perms::owner_read | fs::perms::owner_exec);
+  const bool is_root = ::geteuid() == 0;
+  EXPECT_EQ(Folder(path_).can_be_written(), is_root);
+  fs::permissions(path_, fs::perms::owner_all);
 }
 
 TEST_F(FolderTest, IsRefusedWhereThereIsNone) {

@@ -178,6 +178,25 @@ TEST_F(RunsTest, PackCellsThatOthersServe) {
   EXPECT_THROW((void)make_command("../a", "film"), InputError);
 }
 
+TEST_F(RunsTest, MakeProgramsOfRobotsWithTheCellThatTheyPacked) {
+  RunRequest one = request("a", "it's \\ mine");
+  one.items = "mine.csv";
+  const std::string line = as_shell_line(command_of(one));
+  EXPECT_EQ(words_of(line), command_of(one));
+  EXPECT_EQ(as_shell_line(make_command("a", "urscript", line)),
+            "snug export a.program.csv --scenario cell.yaml --items mine.csv --sequence 'it'\\''s \\ mine' --format "
+            "urscript -o a.script");
+  EXPECT_EQ(make_command("a", "ros", line).back(), "a.ros.yaml");
+  // The line is that of NAME.txt, which anybody may have written.
+  for (const char* wrong :
+       {"", "snug", "snug pack", "snug pack --help", "snug pack ../secret.yaml", "snug pack /etc/passwd",
+        "rm -rf cell.yaml", "snug pack cell.yaml --items --set", "snug pack cell.yaml --items /a/b.csv",
+        "snug pack cell.yaml --sequence -o", "snug pack cell.yaml --sequence ''"})
+    EXPECT_THROW((void)make_command("a", "urscript", wrong), InputError) << wrong;
+  EXPECT_EQ(words_of("  a 'b c'  d'e'f 'g"), (std::vector<std::string>{"a", "b c", "def", "g"}));
+  EXPECT_TRUE(words_of("").empty());
+}
+
 TEST_F(RunsTest, TellWhatGoesOnElsewhereFromWhatWasKilled) {
   Runs runs(*folder_, program_, 2), other(*folder_, program_, 1);
   runs.start(request("a", "waits"));
@@ -244,20 +263,20 @@ TEST_F(RunsTest, LeaveNoFramesBesideTheirRecording) {
 
 TEST_F(RunsTest, MakeReportsOfRecordingsAndSayWhyNot) {
   Runs runs(*folder_, program_, 1);
-  EXPECT_THROW(runs.make_report("good"), InputError);
+  EXPECT_THROW((void)runs.report("good"), InputError);
   std::ofstream(cells_ / "good.h5") << "x";
   std::ofstream(cells_ / "bad.h5") << "x";
-  runs.make_report("good");
+  EXPECT_EQ(runs.report("good"), "page\n");
   EXPECT_EQ(folder_->read("good.html"), "page\n");
   try {
-    runs.make_report("bad");
+    (void)runs.report("bad");
     ADD_FAILURE();
   } catch (const InputError& error) {
     EXPECT_EQ(error.got, "no recording");
   }
   fs::remove(cells_ / "good.html");
   fs::create_symlink(scratch_.path() / "outside.html", cells_ / "good.html");
-  EXPECT_THROW(runs.make_report("good"), InputError);
+  EXPECT_THROW((void)runs.report("good"), InputError);
   EXPECT_FALSE(fs::exists(scratch_.path() / "outside.html"));
 }
 

@@ -48,10 +48,10 @@ class ServiceTest : public ::testing::Test {
   /// The form of an answer (api_forms.hpp); empty: it is none of the page's.
   [[nodiscard]] static std::string form_of(const std::string& method, const std::string& path, int status) {
     static const std::map<std::string, std::string> kForms = {
-        {"folder", "FolderList"}, {"templates", "TemplateText"}, {"facts", "Checked"},
-        {"check", "Checked"},     {"sheet", "SheetRead"},        {"scene", "CellScene"},
-        {"reach", "ReachMap"},    {"move", "EditedText"},        {"cup", "EditedText"},
-        {"arm", "EditedText"},    {"catalogue", "Catalogue"},    {"commands", "RunCommands"}};
+        {"folder", "FolderList"},   {"templates", "TemplateText"}, {"facts", "Checked"},   {"check", "Checked"},
+        {"sheet", "SheetRead"},     {"typical", "TypicalDrawn"},   {"scene", "CellScene"}, {"reach", "ReachMap"},
+        {"move", "EditedText"},     {"cup", "EditedText"},         {"arm", "EditedText"},  {"catalogue", "Catalogue"},
+        {"commands", "RunCommands"}};
     if (status >= 400) return "Refusal";
     const std::string what = path.substr(0, path.find('/'));
     if (what == "files") return method == "PUT" ? "Written" : "";
@@ -98,6 +98,27 @@ TEST_F(ServiceTest, TellsMistakesWithTheirLineAndKeepsWhatWasThere) {
   EXPECT_EQ(json("PUT", "files/a.yaml", wrong, 422)["mistake"]["line"], 2);
   EXPECT_EQ(ask("GET", "files/a.yaml").body, cell_);
   EXPECT_EQ(json("POST", "check/b.csv", std::string(kTwoOrders) + "mine,C,x,1,1,1,1\n")["mistake"]["line"], 4);
+}
+
+TEST_F(ServiceTest, DrawsTypicalOrders) {
+  const Json drawn = json("POST", "typical", R"({"orders":2,"boxes":5,"seed":7})");
+  EXPECT_EQ(drawn["command"], "snug items draw --orders 2 --boxes 5 --seed 7 -o typical-7.csv");
+  EXPECT_EQ(json("PUT", "files/t.csv", drawn["orders"])["facts"]["sequences"], Json({"order-1", "order-2"}));
+  for (const char* wrong : {R"({"orders":0})", R"({"boxes":201})", R"({"orders":99999999999})", R"({"seed":-1})",
+                            R"({"orders":1.5})", R"({"x":1})", "[]"})
+    (void)json("POST", "typical", wrong, 422);
+}
+
+TEST_F(ServiceTest, PutsACupOfADataSheet) {
+  const Json request = {{"text", cell_}, {"sheet", {{"diameter_mm", 42}, {"bellows", 2.5}, {"material", "nitrile"}}}};
+  const Json put = json("POST", "cup/a.yaml", request.dump());
+  EXPECT_EQ(put["command"], "snug cup estimate --diameter 42 --bellows 2.5 --material nitrile --lip plain");
+  EXPECT_GT(put["pull_off_N"][1], put["pull_off_N"][0]);
+  EXPECT_NEAR(json("POST", "check/a.yaml", put["text"])["facts"]["cup_radius_mm"].get<double>(), 21.0, 1e-6);
+  for (const char* wrong : {R"({})", R"({"diameter_mm":1e9})", R"({"diameter_mm":"40"})",
+                            R"({"diameter_mm":40,"lip":"--x"})", R"({"diameter_mm":40,"y":1})", "[]", R"("40")"}) {
+    (void)json("POST", "cup/a.yaml", R"({"text":"","sheet":)" + std::string(wrong) + "}", 422);
+  }
 }
 
 TEST_F(ServiceTest, ShowsCommandsAndStartsThemOncePerPlant) {
