@@ -51,6 +51,10 @@ void Listener::stop() {
 }
 
 void answer_whole(httplib::Response& response, std::shared_ptr<const std::string> bytes, const std::string& type) {
+  if (bytes->empty()) {  // nothing to provide: the library would wait for it for ever
+    response.set_content("", type);
+    return;
+  }
   const std::size_t size = bytes->size();
   response.set_content_provider(size, type, [bytes](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
     return sink.write(bytes->data() + offset, length);

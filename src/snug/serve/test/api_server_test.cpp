@@ -18,7 +18,8 @@ class ApiServerTest : public ::testing::Test {
       : server_(0, 1000, {{"/", "text/html", "<html></html>"}},
                 [](const ApiRequest& request) {
                   ApiAnswer answer;
-                  answer.body = request.method + " " + request.path + " " + request.body;
+                  if (request.path != "/api/1/empty")
+                    answer.body = request.method + " " + request.path + " " + request.body;
                   return answer;
                 }),
         thread_([this] { server_.run(); }) {
@@ -54,6 +55,12 @@ TEST_F(ApiServerTest, AnswersWhoKnowsTheToken) {
   const std::string cookie = "Cookie: " + page.substr(begin, page.find(';', begin) - begin) + "\r\n";
   EXPECT_TRUE(ask("GET /api/1/x%20y", cookie).ends_with("GET /api/1/x y "));
   EXPECT_EQ(status(ask("GET /nothing", cookie)), 404);
+}
+
+TEST_F(ApiServerTest, EndsAnAnswerThatIsEmpty) {
+  const std::string answer = ask("GET /api/1/empty" + token_, "");
+  EXPECT_EQ(status(answer), 200);
+  EXPECT_NE(answer.find("Content-Length: 0"), std::string::npos) << answer;
 }
 
 TEST_F(ApiServerTest, TakesBodiesOfOnePlainLengthOnly) {
