@@ -62,6 +62,10 @@ int run_script(const RunOptions& options) {
       end = "the robot stopped";
       break;
     }
+    if (data.runtime_state == ur::RuntimeState::Paused) {
+      end = "the program was paused: no client sets the input that its watchdog is for";
+      break;
+    }
     if (is_stopped || data.timestamp >= options.until) {
       end = is_stopped ? "stopped by a signal" : fmt::format("stopped at {} s", options.until);
       break;

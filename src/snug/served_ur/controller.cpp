@@ -22,9 +22,11 @@ using ur::RobotMode;
 using ur::RuntimeState;
 using ur::SafetyMode;
 
-constexpr double kPowerTime = 0.5;  ///< s, from power on to idle, and from there until the brakes are released
-constexpr double kMovingOut = 0.5;  // s, of motion after a stop that was released
-constexpr double kPartTime = 0.1;   // s, that a part which was asked for takes to come
+constexpr double kPowerTime = 0.5;    ///< s, from power on to idle, and from there until the brakes are released
+constexpr double kMovingOut = 0.5;    // s, of motion after a stop that was released
+constexpr double kUnlockAfter = 5.0;  // s, that a protective stop lasts at least
+constexpr int kWarning = 2;           // level of an error message
+constexpr double kPartTime = 0.1;     // s, that a part which was asked for takes to come
 constexpr std::size_t kMostMessages = 1000;
 
 /// The bit of a signal, as it stands where the signal says yes or no.
@@ -40,6 +42,14 @@ std::uint64_t with_bits(std::uint64_t word, std::uint8_t mask, std::uint8_t bits
   return (word & ~at) | ((std::uint64_t{bits} << shift) & at);
 }
 
+/// Clients compare the words for a function that is not there.
+std::string as_controllers_say(const std::string& error) {
+  constexpr std::string_view kUnknown = "unknown function '";
+  if (!error.starts_with(kUnknown)) return error;
+  return "compile_error_name_not_found:" +
+         error.substr(kUnknown.size(), error.find('\'', kUnknown.size()) - kUnknown.size()) + ":";
+}
+
 }  // namespace
 
 Controller::Controller(const cell::Simulation& simulation, ControllerSettings settings)
@@ -50,8 +60,8 @@ Controller::Controller(const cell::Simulation& simulation, ControllerSettings se
       arm_(simulation),
       initial_(simulation.make_state()),
       initial_reading_(simulation.read_still(initial_)),
-      programs_(
-          std::make_unique<internal::Programs>(arm_, period_of(settings_.model), settings_.programs_reach_others)) {
+      programs_(std::make_unique<internal::Programs>(arm_, period_of(settings_.model), settings_.programs_reach_others,
+                                                     inputs_)) {
   SNUG_CHECK(std::abs(simulation.scenario().controller.tick - period_of(settings_.model)) < 1e-12,
              "the cell's tick is the controller's period");
   data_.robot_mode = RobotMode::Running;
@@ -134,7 +144,8 @@ void Controller::release_brakes() {
 }
 
 bool Controller::unlock_protective_stop() {
-  if (data_.safety_mode != SafetyMode::ProtectiveStop) return false;
+  const double since = static_cast<double>(period_ - stopped_since_) * period_of(settings_.model);
+  if (data_.safety_mode != SafetyMode::ProtectiveStop || since < kUnlockAfter) return false;
   set_safety(SafetyMode::Normal);
   moving_out_ = static_cast<int>(std::lround(kMovingOut / period_of(settings_.model)));
   return true;
@@ -206,9 +217,11 @@ const std::string& Controller::program_name() const { return is_loaded_last_ ? l
 void Controller::run_programs() {
   using Kind = internal::ProgramNews::Kind;
   programs_->step(data_);
-  if (programs_->take_protective_stop() && data_.safety_mode == SafetyMode::Normal) {
+  const std::optional<std::string> stop = programs_->take_protective_stop();
+  if (stop && data_.safety_mode == SafetyMode::Normal) {
     if (run_ && !is_ended_) run_->stand();
-    stop_for_protection("a program asked for a protective stop");
+    stop_for_protection(*stop);
+    program_error_ = *stop;
   }
   data_.runtime_state = !programs_->is_active()  ? RuntimeState::Stopped
                         : programs_->is_paused() ? RuntimeState::Paused
@@ -223,7 +236,7 @@ void Controller::run_programs() {
         break;
       case Kind::Failed:
         program_error_ = std::to_string(news.line) + ":" + std::to_string(news.column) + ": " + news.text;
-        tell(ur::runtime_exception(data_.timestamp, news.line, news.column, news.text));
+        tell(ur::runtime_exception(data_.timestamp, news.line, news.column, as_controllers_say(news.text)));
         break;
       case Kind::Halted:
         program_error_ = std::to_string(news.line) + ": " + news.text;
@@ -299,7 +312,8 @@ void Controller::stand() {
 void Controller::stop_for_protection(const std::string& why) {
   stand();
   programs_->abort();
-  tell(ur::error_message(data_.timestamp, 157, 0, 3, why));
+  stopped_since_ = period_;
+  tell(ur::error_message(data_.timestamp, 157, 0, kWarning, why));
   set_safety(SafetyMode::ProtectiveStop);
 }
 

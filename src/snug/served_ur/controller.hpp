@@ -71,7 +71,7 @@ class Controller {
   void power_off();
   /// With power, if that is off.
   void release_brakes();
-  /// False: there is no protective stop.
+  /// False: there is no protective stop, or it is younger than 5 s.
   bool unlock_protective_stop();
   /// After a fault: the controller starts again without power, with a new cell. It does nothing else.
   void restart_safety();
@@ -154,6 +154,7 @@ class Controller {
   ur::RobotInputs inputs_;
   std::int64_t period_ = 0;
   std::int64_t mode_since_ = 0;         ///< period
+  std::int64_t stopped_since_ = 0;      ///< period of the last protective stop
   bool wants_brakes_released_ = false;  ///< once it is idle
   std::vector<std::string> messages_;
 };

@@ -73,7 +73,10 @@ DashboardAnswer answer_dashboard(std::string_view line, Controller& controller) 
       controller.release_brakes();
       return {"Brake releasing"};
     case DashboardCommand::UnlockProtectiveStop:
-      (void)controller.unlock_protective_stop();
+      if (!controller.unlock_protective_stop() && controller.data().safety_mode == ur::SafetyMode::ProtectiveStop)
+        return {
+            "Cannot unlock protective stop until 5s after occurrence. Always inspect cause of protective stop before "
+            "unlocking"};
       return {"Protective stop releasing"};
     case DashboardCommand::RestartSafety:
       controller.restart_safety();

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace snug::ur {
 
@@ -103,6 +104,8 @@ struct RobotInputs {
   std::array<double, 2> analog{};  ///< 0 .. 1
   Values6 external_force_torque{};
   Registers registers;
+  /// How often each was set: by rtde::input_count().
+  std::vector<std::uint64_t> counts;
   bool operator==(const RobotInputs&) const = default;
 };
 

@@ -105,6 +105,13 @@ const char* input_type(std::string_view name) {
   return field != nullptr ? field->type : nullptr;
 }
 
+std::optional<std::uint64_t> input_count(const RobotInputs& inputs, std::string_view name) {
+  const InputField* field = find_field(internal::input_fields(), name);
+  if (field == nullptr) return std::nullopt;
+  const auto index = static_cast<std::size_t>(field - internal::input_fields().data());
+  return index < inputs.counts.size() ? inputs.counts[index] : 0;
+}
+
 std::vector<std::string> output_names() {
   std::vector<std::string> names;
   for (const OutputField& field : internal::output_fields()) names.push_back(field.name);
@@ -245,11 +252,31 @@ std::string RtdeSession::set_up_inputs(std::string_view payload) {
   return out.take();
 }
 
+namespace {
+
+/// Numbers that are none set nothing.
+bool is_finite(const InputField& field, ByteReader in) {
+  const std::string_view type = field.type;
+  if (type != "DOUBLE" && type != "VECTOR6D") return true;
+  for (std::size_t i = 0; i < field.size; i += sizeof(double))
+    if (!std::isfinite(in.f64())) return false;
+  return true;
+}
+
+}  // namespace
+
 bool RtdeSession::take_data(std::string_view payload, RobotInputs& inputs) const {
   ByteReader in(payload);
   const std::size_t id = in.u8();
   if (id < 1 || id > inputs_.size() || in.rest().size() != inputs_[id - 1].size) return false;
-  for (const std::size_t field : inputs_[id - 1].fields) internal::input_fields()[field].read(in, inputs);
+  for (const std::size_t index : inputs_[id - 1].fields) {
+    const InputField& field = internal::input_fields()[index];
+    const bool sets = is_finite(field, in);
+    field.read(in, inputs);
+    if (!sets) continue;
+    inputs.counts.resize(internal::input_fields().size());
+    ++inputs.counts[index];
+  }
   return true;
 }
 

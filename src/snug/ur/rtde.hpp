@@ -48,6 +48,8 @@ enum class From { Client, Controller };
 /// An output that no robot has, BOOL: who asks for it, and sets inputs, sets the pace of a served cell, a period for
 /// each of its data packages.
 inline constexpr const char* kLockstep = "snug_lockstep";
+/// How often this input was set; none: it is not known.
+[[nodiscard]] std::optional<std::uint64_t> input_count(const RobotInputs& inputs, std::string_view name);
 /// All names, for documents and tests, registers with their numbers.
 [[nodiscard]] std::vector<std::string> output_names();
 [[nodiscard]] std::vector<std::string> input_names();

@@ -1,8 +1,9 @@
-// Host without sockets: what a controller says that lets no program out.
+// Host without sockets and RTDE: what a controller says that lets no program out.
 #include "snug/urscript/host.hpp"
 
 namespace snug::urscript {
 
+std::optional<std::uint64_t> Host::input_count(std::string_view /*name*/) const { return std::nullopt; }
 SocketState Host::open_socket(std::string_view /*name*/, std::string_view /*address*/, int /*port*/) {
   return SocketState::Closed;
 }

@@ -61,7 +61,10 @@ struct ControllerState {
   Payload payload;
   Vector3 gravity_Base{0.0, 0.0, 9.82};  ///< m/s^2, as set_gravity has it: upwards
   int tool_voltage = 0;                  ///< V: 0, 12 or 24
-  bool wants_protective_stop = false;    ///< set by protective_stop; the host ends the program and clears it
+  /// Set by protective_stop, and by motions that would leave the arm's reach or limits; the host ends the program and
+  /// clears it.
+  bool wants_protective_stop = false;
+  std::string stop_reason;  ///< of such a motion; empty: the program asked for the stop
 
   /// Where the arm is to be at the end of this period; equal to where it is told to stand when nothing moves it.
   JointTarget target;
@@ -102,6 +105,8 @@ class Host {
   /// The joints for X_BaseF that are nearest to `near`, within the limits of positions; none: out of reach.
   [[nodiscard]] virtual std::optional<Joints> inverse(const Pose& X_BaseF, const Joints& near) const = 0;
   virtual void show(const Message& message) = 0;
+  /// How often clients have set this input of RTDE so far; none: there is no such input.
+  [[nodiscard]] virtual std::optional<std::uint64_t> input_count(std::string_view name) const;
 
   /// Sockets have names. Opening, then Open or Closed when asked again; a host without sockets says Closed.
   [[nodiscard]] virtual SocketState open_socket(std::string_view name, std::string_view address, int port);

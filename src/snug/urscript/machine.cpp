@@ -11,6 +11,11 @@ namespace {
 
 constexpr double kPauseTime = 0.25;  // s, in which a paused program's motion slows down
 
+void ask_for_stop(Host& host, const std::string& why) {
+  host.state().wants_protective_stop = true;
+  host.state().stop_reason = why;
+}
+
 }  // namespace
 
 void Machine::Impl::run_threads(Host& host) {
@@ -50,6 +55,7 @@ void Machine::Impl::run_threads(Host& host) {
         if (threads[i].wait && critical == threads[i].id) critical = -1;
         goes_on = goes_on || threads.size() > count;
       } catch (Fault& fault) {
+        if (fault.stops_arm) ask_for_stop(host, fault.text);
         status.error = {where->line, where->column, std::move(fault.text)};
         status.line = where->line;
         end(MachineState::Failed);
@@ -64,6 +70,23 @@ void Machine::Impl::run_threads(Host& host) {
     critical = -1;
   // The first is the program itself; it stays first.
   std::erase_if(threads, [](const Thread& thread) { return thread.is_done && thread.id != 0; });
+}
+
+/// The time of the program counts: it stands while the program is paused.
+void Machine::Impl::check_watchdogs(const Host& host) {
+  for (internal::Watchdog& dog : watchdogs) {
+    const std::uint64_t count = host.input_count(dog.input).value_or(0);
+    if (count != dog.count) {
+      dog.count = count;
+      dog.since = time;
+    }
+    if (dog.action == internal::Watchdog::Action::Ignore || time - dog.since <= dog.patience + 1e-9) continue;
+    dog.since = time;  // a program that goes on has the whole time again
+    if (dog.action == internal::Watchdog::Action::Stop)
+      end(MachineState::Stopped);
+    else
+      is_paused = true;
+  }
 }
 
 void Machine::Impl::end(MachineState outcome) {
@@ -92,6 +115,7 @@ void Machine::Impl::step(Host& host) {
   pace = std::clamp(pace + (is_paused ? -dt : dt) / kPauseTime, 0.0, 1.0);
   try {
     if (status.state == MachineState::Running && !stands) run_threads(host);
+    if (status.state == MachineState::Running && !stands) check_watchdogs(host);
     if (program.is_secondary()) {
       if (status.state == MachineState::Braking) status.state = status.outcome;
       return;
@@ -105,6 +129,7 @@ void Machine::Impl::step(Host& host) {
     }
     motion.step(host, is_braking ? 1.0 : pace * std::clamp(state.speed_fraction, 0.0, 1.0));
   } catch (Fault& fault) {
+    if (fault.stops_arm) ask_for_stop(host, fault.text);
     if (status.error.text.empty()) status.error = {status.line, 0, std::move(fault.text)};
     status.outcome = MachineState::Failed;
     status.state = MachineState::Failed;

@@ -8,7 +8,8 @@ namespace snug::served_ur::internal {
 
 using urscript::MachineState;
 
-Programs::Programs(const UrArm& arm, double period, bool lets_out) : arm_(arm), period_(period), sockets_(lets_out) {
+Programs::Programs(const UrArm& arm, double period, bool lets_out, const ur::RobotInputs& inputs)
+    : arm_(arm), inputs_(inputs), period_(period), sockets_(lets_out) {
   limits_.lower = arm.facts().joint_min;
   limits_.upper = arm.facts().joint_max;
   limits_.max_speed = arm.facts().joint_speed;
@@ -16,6 +17,12 @@ Programs::Programs(const UrArm& arm, double period, bool lets_out) : arm_(arm), 
   state_.X_FE = arm.tool();
   state_.payload.mass = arm.tool_load().mass;
   state_.payload.com_F = arm.tool_load().com;
+}
+
+std::optional<std::string> Programs::take_protective_stop() {
+  if (!std::exchange(state_.wants_protective_stop, false)) return std::nullopt;
+  std::string why = std::exchange(state_.stop_reason, {});
+  return why.empty() ? "a program asked for a protective stop" : std::move(why);
 }
 
 void Programs::tell(ProgramNews news) {
@@ -115,7 +122,7 @@ void Programs::step(ur::RobotData& data) {
   if (main_) {
     main_->step(*this);
     const urscript::Status& status = main_->status();
-    if (status.state == MachineState::Failed) {
+    if (status.state == MachineState::Failed && !state_.wants_protective_stop) {
       tell({ProgramNews::Kind::Failed, status.error.text, status.error.line, status.error.column});
     }
     if (status.state == MachineState::Halted) tell({ProgramNews::Kind::Halted, "the program halted", status.line, 0});

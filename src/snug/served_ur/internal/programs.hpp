@@ -9,6 +9,7 @@
 
 #include "snug/served_ur/internal/script_sockets.hpp"
 #include "snug/served_ur/ur_arm.hpp"
+#include "snug/ur/rtde.hpp"
 #include "snug/urscript/host.hpp"
 #include "snug/urscript/machine.hpp"
 
@@ -24,8 +25,9 @@ struct ProgramNews {
 
 class Programs final : private urscript::Host {
  public:
-  /// The arm outlives the programs. `period`: s. `lets_out`: programs may open sockets to other machines.
-  Programs(const UrArm& arm, double period, bool lets_out);
+  /// Arm and inputs outlive the programs. `period`: s. `lets_out`: programs may open sockets to other machines.
+  /// `inputs`: what clients have set, of the controller.
+  Programs(const UrArm& arm, double period, bool lets_out, const ur::RobotInputs& inputs);
 
   /// Starts the program and stops the one that ran; a secondary one runs beside it. What is no program is news.
   /// `data`: where the arm stands; `may_move`: else only a secondary one starts.
@@ -36,8 +38,9 @@ class Programs final : private urscript::Host {
   void abort();
   bool pause();
   bool resume();
-  /// A program has asked for a protective stop since this was asked last.
-  [[nodiscard]] bool take_protective_stop() { return std::exchange(state_.wants_protective_stop, false); }
+  /// Why the arm is to stop for protection: a program asked for it, or a motion would leave the arm's reach or limits.
+  /// None: no stop since this was asked last.
+  [[nodiscard]] std::optional<std::string> take_protective_stop();
   /// The program goes on behind its popup.
   void close_popup() { state_.has_popup = false; }
 
@@ -64,6 +67,9 @@ class Programs final : private urscript::Host {
     return arm_.inverse(X_BaseF, near);
   }
   void show(const urscript::Message& message) override;
+  [[nodiscard]] std::optional<std::uint64_t> input_count(std::string_view name) const override {
+    return ur::rtde::input_count(inputs_, name);
+  }
   [[nodiscard]] urscript::SocketState open_socket(std::string_view name, std::string_view address, int port) override {
     return sockets_.open(name, address, port);
   }
@@ -79,6 +85,7 @@ class Programs final : private urscript::Host {
   void tell(ProgramNews news);
 
   const UrArm& arm_;
+  const ur::RobotInputs& inputs_;
   double period_;
   urscript::ArmLimits limits_;
   urscript::ControllerState state_;

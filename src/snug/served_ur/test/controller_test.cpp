@@ -10,6 +10,7 @@
 #include "cell.hpp"
 #include "snug/core/temporary_folder.hpp"
 #include "snug/served_ur/dashboard.hpp"
+#include "snug/ur/rtde.hpp"
 
 namespace snug::served_ur {
 namespace {
@@ -164,6 +165,10 @@ TEST(Controller, SaysWhatIsWrongWithAProgram) {
   ASSERT_GE(message.size(), 24u);
   EXPECT_EQ(message[14], 10);  // a runtime exception
   EXPECT_EQ(message[18], 2);   // in this line
+  controller.run_program("def bad():\n  calldoesntexist()\nend\n");
+  controller.step();
+  EXPECT_NE(messages_of(controller).find("compile_error_name_not_found:calldoesntexist:"), std::string::npos)
+      << "clients compare these words";
   EXPECT_FALSE(controller.data().is_program_running());
 }
 
@@ -217,10 +222,48 @@ TEST(Controller, AProgramMayAskForAProtectiveStop) {
   EXPECT_GT(stands[0], start[0] + 0.05);
   EXPECT_EQ(ask(controller, "running"), "Program running: false");
   EXPECT_EQ(controller.data().digital_outputs, 1u);  // the vacuum stays on
-  EXPECT_TRUE(controller.unlock_protective_stop());
+  EXPECT_FALSE(controller.unlock_protective_stop()) << "it lasts 5 s";
+  EXPECT_EQ(ask(controller, "unlock protective stop").find("Cannot unlock protective stop until 5s"), 0U);
+  step(controller, 600);
+  EXPECT_EQ(controller.data().safety_mode, ur::SafetyMode::ProtectiveStop);
+  EXPECT_EQ(ask(controller, "unlock protective stop"), "Protective stop releasing");
   step(controller, 50);
   EXPECT_EQ(controller.data().safety_mode, ur::SafetyMode::Normal);
   EXPECT_EQ(controller.data().actual_q, stands);
+}
+
+TEST(Controller, ATargetFarAwayStopsForProtectionAndIsNoException) {
+  for (const char* body : {"  servoj([0, 0, 0, 0, 0, 0], t=0.008)\n  sleep(1)\n", "  movel(p[9, 0, 0, 0, 0, 0])\n"}) {
+    Controller controller(demonstrator_cell(), {});
+    const ur::Values6 before = controller.data().actual_q;
+    (void)controller.take_messages();
+    controller.run_program(std::string("def p():\n") + body + "end\n");
+    step(controller, 20);
+    EXPECT_EQ(controller.data().safety_mode, ur::SafetyMode::ProtectiveStop) << body;
+    EXPECT_NE(controller.program_error(), "") << body;
+    for (std::size_t j = 0; j < before.size(); ++j) EXPECT_NEAR(controller.data().actual_q[j], before[j], 1e-3);
+    constexpr char kRuntimeException = 10;
+    for (const std::string& packet : controller.take_messages()) EXPECT_NE(packet[14], kRuntimeException) << body;
+  }
+}
+
+TEST(Controller, AWatchdogPausesAProgramWhoseInputNobodySets) {
+  Controller controller(demonstrator_cell(), {});
+  ur::InputOwners owners;
+  ur::RtdeSession session(controller.model(), 1, owners);
+  const auto ask_rtde = [&](ur::rtde::Frame type, std::string_view payload) {
+    (void)session.answer({static_cast<std::uint8_t>(type), payload}, controller.inputs());
+  };
+  ask_rtde(ur::rtde::Frame::Version, std::string_view("\0\2", 2));
+  ask_rtde(ur::rtde::Frame::Inputs, "input_int_register_0");
+  controller.run_program("def p():\n  rtde_set_watchdog(\"input_int_register_0\", 10, \"PAUSE\")\n  sleep(9)\nend\n");
+  for (int i = 0; i < 5; ++i) {
+    ask_rtde(ur::rtde::Frame::Data, std::string_view("\1\0\0\0\7", 5));  // the same value: it counts
+    step(controller, 10);
+    EXPECT_EQ(controller.data().runtime_state, ur::RuntimeState::Playing) << i;
+  }
+  step(controller, 10);
+  EXPECT_EQ(controller.data().runtime_state, ur::RuntimeState::Paused);
 }
 
 TEST(Controller, StartsNoProgramWithoutPowerAndEndsOneThatRuns) {

@@ -115,6 +115,18 @@ TEST(Rtde, DataOfAnotherSizeOrRecipeSetNothing) {
   }
 }
 
+TEST(Rtde, CountsHowOftenAnInputIsSet) {
+  InputOwners owners;
+  Client client(owners);
+  EXPECT_EQ(rtde::input_count(client.inputs, "input_double_register_0"), 0U);
+  EXPECT_EQ(rtde::input_count(client.inputs, "input_double_register_99"), std::nullopt);
+  (void)client.say(rtde::Frame::Inputs, "input_double_register_0");
+  for (int i = 0; i < 3; ++i) (void)client.say(rtde::Frame::Data, "\x01\x3f\xf0\0\0\0\0\0\0"s);
+  (void)client.say(rtde::Frame::Data, "\x01\x7f\xf8\0\0\0\0\0\0"s);  // no number
+  EXPECT_EQ(rtde::input_count(client.inputs, "input_double_register_0"), 3U) << "the same value, too";
+  EXPECT_EQ(rtde::input_count(client.inputs, "input_double_register_1"), 0U);
+}
+
 TEST(Rtde, FramesAreTakenOnlyWhenTheyAreWhole) {
   EXPECT_FALSE(rtde::next_frame("").frame);
   EXPECT_FALSE(rtde::next_frame("\x00\x05V\x00"s).frame);

@@ -1,6 +1,7 @@
 // Built-in functions of URScript: their names and parameters, and what they do.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
@@ -12,10 +13,21 @@
 
 namespace snug::urscript::internal {
 
+/// An input of RTDE that clients have to set again and again, as rtde_set_watchdog says.
+struct Watchdog {
+  enum class Action { Ignore, Pause, Stop };
+  std::string input;
+  double patience = 1.0;  ///< s
+  Action action = Action::Pause;
+  std::uint64_t count = 0;  ///< of times that it was set, when it was last looked at
+  double since = 0.0;       ///< s, of the program: then it was set
+};
+
 /// What a call sees. `arguments`: as many as the function has parameters; those that were not given are nothing.
 struct CallContext {
   Host& host;
   Motion& motion;
+  std::vector<Watchdog>& watchdogs;
   double time = 0.0;        ///< s, of the program
   std::int64_t period = 0;  ///< periods so far
   bool may_move = true;     ///< false: a secondary program

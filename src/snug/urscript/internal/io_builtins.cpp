@@ -1,6 +1,8 @@
 // Inputs, outputs, registers, messages, sockets.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <memory>
 
@@ -11,6 +13,7 @@ namespace {
 
 constexpr std::size_t kLongestLine = 8192;  // bytes of socket_read_line
 constexpr int kMostIntegers = 100;          // of socket_read_binary_integer
+constexpr std::size_t kMostWatchdogs = 100;
 
 std::size_t place(const Value& value, std::size_t count, const char* what) {
   const double number = number_of(value, what);
@@ -172,6 +175,31 @@ Value popup(CallContext& call) {
 }
 Value no_setting(CallContext&) { return {}; }
 
+/// Clients have to set the input so often; else the program is paused, or stopped. 0 Hz: no more.
+Value set_watchdog(CallContext& call) {
+  Watchdog dog;
+  dog.input = call.arguments[0].as_text();
+  const double frequency = number_of(call.arguments[1], "the frequency");
+  std::string action = call.has(2) ? call.arguments[2].as_text() : "pause";
+  std::ranges::transform(action, action.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::optional<std::uint64_t> count = call.host.input_count(dog.input);
+  if (!count) throw Fault{fmt::format("'{}' is no input of RTDE", dog.input)};
+  if (!(frequency >= 0.0) || !std::isfinite(frequency)) throw Fault{"a frequency below 0"};
+  if (action != "pause" && action != "stop" && action != "ignore")
+    throw Fault{fmt::format("the action '{}' is not pause, stop or ignore", action)};
+  std::erase_if(call.watchdogs, [&](const Watchdog& one) { return one.input == dog.input; });
+  if (frequency == 0.0) return {};
+  if (call.watchdogs.size() >= kMostWatchdogs) throw Fault{fmt::format("more than {} watchdogs", kMostWatchdogs)};
+  dog.patience = 1.0 / frequency;
+  dog.action = action == "stop"     ? Watchdog::Action::Stop
+               : action == "ignore" ? Watchdog::Action::Ignore
+                                    : Watchdog::Action::Pause;
+  dog.count = *count;
+  dog.since = call.time;
+  call.watchdogs.push_back(std::move(dog));
+  return {};
+}
+
 const Builtin kIo[] = {
     {"set_digital_out", "n b", 2, set_output<0, 8>},
     {"set_standard_digital_out", "n b", 2, set_output<0, 8>},
@@ -256,7 +284,7 @@ const Builtin kIo[] = {
            },
            Value::of(std::string()));
      }},
-    {"rtde_set_watchdog", "variable_name min_frequency action", 2, no_setting},
+    {"rtde_set_watchdog", "variable_name min_frequency action", 2, set_watchdog},
 };
 
 }  // namespace

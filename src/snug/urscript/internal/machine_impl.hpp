@@ -138,7 +138,9 @@ struct Machine::Impl {
     return static_cast<std::size_t>(at);
   }
 
-  [[nodiscard]] CallContext context(Host& host) { return {host, motion, time, period, !program.is_secondary()}; }
+  [[nodiscard]] CallContext context(Host& host) {
+    return {host, motion, watchdogs, time, period, !program.is_secondary()};
+  }
 
   void call_builtin(Thread& thread, const Instruction& instruction, Host& host) {
     const internal::CallNames& names = code().calls[static_cast<std::size_t>(instruction.b)];
@@ -168,6 +170,7 @@ struct Machine::Impl {
   void run_on_values(Thread& thread, const internal::Instruction& instruction, Host& host);
   bool run_flow(Thread& thread, const internal::Instruction& instruction, Host& host);
   void run_threads(Host& host);
+  void check_watchdogs(const Host& host);
   void end(MachineState outcome);
   void step(Host& host);
 
@@ -176,6 +179,7 @@ struct Machine::Impl {
   std::vector<Value> globals;
   std::vector<Thread> threads;
   internal::Motion motion;
+  std::vector<internal::Watchdog> watchdogs;
   Status status;
   std::size_t memory = 0;
   std::int64_t left = 0;  ///< of what this period may cost

@@ -137,7 +137,7 @@ void Motion::move_line(const Host& host, const Pose& X_BaseE, const MoveSettings
     if (share == 0.0) return from;
     const Pose pose{begin.R * exp_rotation(share * turn), begin.p + share * way};
     const std::optional<Joints> q = host.inverse(pose * X_EF, near);
-    if (!q) throw Fault{"the arm does not reach a pose on the way"};
+    if (!q) throw Fault{"the arm does not reach a pose on the way", true};
     return near = *q;
   });
 }
@@ -162,7 +162,7 @@ void Motion::move_arc(const Host& host, const Pose& via, const Pose& to, const M
     if (share == 0.0) return from;
     const Pose pose{begin.R * exp_rotation(share * turn), middle + exp_rotation(share * angle * axis) * radius};
     const std::optional<Joints> q = host.inverse(pose * X_EF, near);
-    if (!q) throw Fault{"the arm does not reach a pose on the way"};
+    if (!q) throw Fault{"the arm does not reach a pose on the way", true};
     return near = *q;
   });
 }
@@ -330,7 +330,7 @@ void Motion::step(Host& host, double share) {
     if (const std::optional<Joints> found = host.inverse(pose * X_FE.inverse(), q))
       q = *found;
     else
-      throw Fault{"the arm does not reach further"};
+      throw Fault{"the arm does not reach further", true};
   }
   if (mode_ != Mode::Path) end_ = q;
   if (force_) push(host, q);
@@ -346,7 +346,7 @@ void Motion::step(Host& host, double share) {
   if (!is_possible) {
     stop(host);
     target.qd = target.qdd = {};
-    throw Fault{"a joint would be beyond its limit of position or speed"};
+    throw Fault{"a joint would be beyond its limit of position or speed", true};
   }
   target = next;
   written_ = q;

@@ -32,7 +32,8 @@ struct ForceMode {
 
 /// Moves are paths of joints, sampled each period, that end at rest. A move that begins while another one still goes to
 /// its end is added to what is left of that one: so blends are continuous in position and speed. All throw Fault where
-/// the arm does not reach, step() where a joint would be too fast or beyond its range: then the target stays.
+/// the arm does not reach, step() where a joint would be too fast or beyond its range: then the target stays. Where a
+/// controller would stop for protection, the Fault says so.
 class Motion {
  public:
   void move_joints(const Host& host, const Joints& to, const MoveSettings& settings);

@@ -147,6 +147,7 @@ const Builtin kRobot[] = {
     {"protective_stop", "", 0,
      [](CallContext& c) {
        c.host.state().wants_protective_stop = true;
+       c.host.state().stop_reason.clear();
        return Value{};
      }},
     // The simulated sensor needs none of these.

@@ -45,6 +45,7 @@ struct Value {
 /// Why an operation or a function cannot be; becomes the error of the program.
 struct Fault {
   std::string text;
+  bool stops_arm = false;  ///< a controller stops for protection: nothing in the program could have caught it
 };
 
 /// Throw Fault.

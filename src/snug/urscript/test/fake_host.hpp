@@ -30,6 +30,9 @@ class FakeHost : public Host {
     return Joints{X.p.x(), X.p.y(), X.p.z(), w.x(), w.y(), w.z()};
   }
   void show(const Message& message) override { messages.push_back(message.text); }
+  std::optional<std::uint64_t> input_count(std::string_view name) const override {
+    return name == "input_int_register_0" ? std::optional(input_sets) : std::nullopt;
+  }
   SocketState open_socket(std::string_view, std::string_view, int) override {
     return is_open = true, SocketState::Open;
   }
@@ -64,6 +67,7 @@ class FakeHost : public Host {
   double period_ = 0.008;
   std::vector<std::string> messages;
   std::string sent, incoming;
+  std::uint64_t input_sets = 0;  // of input_int_register_0
   bool is_open = false;
   double fastest = 0.0, jump = 0.0;  // rad/s, rad/s^2
   std::vector<Joints> way;

@@ -349,8 +349,50 @@ TEST(UrScriptMachine, NoTargetIsBeyondAJointsSpeedOrRange) {
     FakeHost host;
     Machine machine = machine_of(body);
     EXPECT_EQ(host.run(machine, 5000).state, MachineState::Failed) << body;
+    EXPECT_TRUE(host.state_.wants_protective_stop) << body;
+    EXPECT_NE(host.state_.stop_reason.find("joint would be beyond"), std::string::npos) << host.state_.stop_reason;
     EXPECT_LE(host.fastest, 3.0 * (1.0 + 1e-5)) << body;
     for (const Joints& q : host.way) EXPECT_LE(std::abs(q[0]), 6.3 + 1e-5) << body;
+  }
+}
+
+TEST(UrScriptMachine, AWayOutOfReachStopsTheArmAPoseOutOfReachTheProgram) {
+  for (const auto& [body, stops] : {std::pair{"  movel(p[10, 0, 0, 0, 0, 0])", true},
+                                    std::pair{"  movec(p[1, 1, 0, 0, 0, 0], p[9, 0, 0, 0, 0, 0])", true},
+                                    std::pair{"  movej(p[10, 0, 0, 0, 0, 0])", false}}) {
+    FakeHost host;
+    Machine machine = machine_of(body);
+    EXPECT_EQ(host.run(machine).state, MachineState::Failed) << body;
+    EXPECT_EQ(host.state_.wants_protective_stop, stops) << body;
+  }
+}
+
+TEST(UrScriptMachine, AWatchdogPausesOrStopsWhereItsInputIsNotSet) {
+  for (const auto& [action, is_paused] : {std::pair{"", true}, {", \"PAUSE\"", true}, {", \"stop\"", false}}) {
+    FakeHost host;
+    Machine machine = machine_of("  rtde_set_watchdog(\"input_int_register_0\", 10" + std::string(action) +
+                                 ")\n  while True:\n    sync()\n  end");
+    for (int i = 0; i < 50; ++i) {
+      if (i % 10 == 0) ++host.input_sets;
+      (void)host.run(machine, 1);
+    }
+    EXPECT_TRUE(machine.status().is_active() && !machine.is_paused()) << "set each 80 ms";
+    for (int i = 0; i < 20; ++i) (void)host.run(machine, 1);
+    EXPECT_EQ(machine.is_paused(), is_paused) << action;
+    EXPECT_EQ(machine.status().state, is_paused ? MachineState::Running : MachineState::Stopped) << action;
+    if (!is_paused) continue;
+    machine.resume();
+    (void)host.run(machine, 10);
+    EXPECT_FALSE(machine.is_paused()) << "it has the whole time again";
+  }
+  (void)said(
+      "  rtde_set_watchdog(\"input_int_register_0\", 100)\n  rtde_set_watchdog(\"input_int_register_0\", 0)\n"
+      "  sleep(0.1)");
+  (void)said("  rtde_set_watchdog(\"input_int_register_0\", 100, \"IGNORE\")\n  sleep(0.1)");
+  for (const char* bad : {"\"x\", 1", "\"input_int_register_0\", -1", "\"input_int_register_0\", 1, \"jump\""}) {
+    FakeHost host;
+    Machine machine = machine_of("  rtde_set_watchdog(" + std::string(bad) + ")");
+    EXPECT_EQ(host.run(machine).state, MachineState::Failed) << bad;
   }
 }
 
