@@ -12,6 +12,7 @@ namespace snug::session {
 
 /// How a box hangs from the cup and how it is to stand.
 struct Carried {
+  model::ItemIndex item;
   skills::PlannedBox box;
   Matrix3 R_WP;  ///< put down like that
   Pose X_PS;     ///< lip on it
@@ -31,6 +32,12 @@ struct Carried {
 /// The box back to the aligner: `held` as it hangs, or picked where it lies or leans.
 [[nodiscard]] std::vector<motion::Waypoint> plan_return(const planning::Scene& scene, const plant::Feedback& robot,
                                                         model::ItemIndex item, const std::optional<Carried>& held);
+/// Ways to put down what hangs from the cup where it can be picked again, the best first: at the aligner, or on the
+/// flat surface where boxes are turned, where no other box stands; with the tool over it, or as it hangs; turned about
+/// the vertical so that the arm reaches every waypoint. `X_PS`: lip on it. Empty: there is none.
+[[nodiscard]] std::vector<std::vector<motion::Waypoint>> plan_put_aside(const planning::Scene& scene,
+                                                                        const plant::Feedback& robot,
+                                                                        model::ItemIndex item, const Pose& X_PS);
 /// It lies where it can be picked for that, elsewhere than at the aligner.
 [[nodiscard]] bool can_return(const planning::Scene& scene, model::ItemIndex item);
 /// The tool to its start.

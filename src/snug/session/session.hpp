@@ -27,7 +27,7 @@ struct SessionOptions {
   EventSink log;                         ///< told of every event when it happens; may be empty
   /// Goes on from here: the events are told again, their items do not come again. The plant has to be as they say.
   std::optional<ResumePoint> resume;
-  /// With `resume`: the robot stands where it was, and may hold a box. That goes to the aligner first, a tool that
+  /// With `resume`: the robot stands where it was, and may hold a box. That is put down first, a tool that
   /// holds nothing straight up.
   bool takes_over = false;
   /// Folder that gets a file of every belief that is decided on (planning/belief_json.hpp), before it is decided on.

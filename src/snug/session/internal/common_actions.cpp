@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "snug/core/input_error.hpp"
 #include "snug/session/assessment.hpp"
 #include "snug/session/internal/run.hpp"
 #include "snug/session/remedy_motions.hpp"
@@ -47,47 +46,6 @@ perception::Observation observe(Run& run, std::span<const perception::Expectatio
     seen = run.executor.perceive(expected);
   }
   return seen;
-}
-
-/// The box at the lip, of those that are seen now.
-std::optional<model::ItemIndex> find_held(Run& run) {
-  for (const model::ItemIndex item : run.options.resume->to_do) run.belief.arrives(item);
-  const perception::Observation seen = run.executor.perceive(run.belief.expectations());
-  run.belief.see(seen);
-  constexpr double kBesideLip = 0.05;  // m: a cup that presses is that much shorter
-  const planning::Scene scene = run.scene();
-  const Vector3 p_WS = run.executor.robot().X_WE * (scene.rules().cup.hold_length * Vector3::UnitZ());
-  std::optional<model::ItemIndex> held;
-  double nearest = kBesideLip;
-  for (std::size_t i = 0; i < scene.belief.boxes.size(); ++i) {
-    const auto& box = scene.belief.boxes[i];
-    if (!box || !box->was_seen) continue;
-    const Vector3 beyond = (box->X_WP.inverse() * p_WS).cwiseAbs() - 0.5 * scene.belief.items[i].size;
-    const double distance = beyond.cwiseMax(0.0).norm() + std::abs(std::min(0.0, beyond.maxCoeff()));
-    if (distance >= nearest) continue;
-    nearest = distance;
-    held = model::ItemIndex(i);
-  }
-  return held;
-}
-
-/// To the aligner, as it hangs. What else came is where it was.
-void return_held(Run& run) {
-  const std::optional<model::ItemIndex> held = find_held(run);
-  if (!held)
-    throw InputError("--resume", "the cup", "a box that hangs from it and is not seen there",
-                     "the box at the aligner: take it out of the cup by hand");
-  const planning::Scene scene = run.scene();
-  const Pose X_ES{Matrix3::Identity(), scene.rules().cup.hold_length * Vector3::UnitZ()};
-  const Pose X_WS = run.executor.robot().X_WE * X_ES;
-  const Carried carried{scene.planned_box(*held), rotation_at_aligner(scene, *held), scene.X_WP(*held).inverse() * X_WS,
-                        std::nullopt};
-  const std::string& id = scene.belief.items[held->slot()].id;
-  run.executor.run({*held, id, plan_return(scene, run.executor.robot(), *held, carried), {std::nullopt, true}, {}});
-  if (!run.executor.has_completed())
-    throw InputError("--resume", "the cup", id + ", which cannot be put to the aligner: " + run.executor.describe_end(),
-                     "the box at the aligner: take it out of the cup by hand");
-  for (const model::ItemIndex item : run.options.resume->to_do) run.belief.forget(item);  // they are brought
 }
 
 }  // namespace
@@ -150,24 +108,13 @@ void send_to_aligner(Run& run, model::ItemIndex item, bool may_hang_as_planned) 
   if (may_hang_as_planned && plan && run.executor.is_holding()) {
     const planning::Attempt& attempt = *plan->best;
     const Matrix3 R_WP = run.belief.now().scenario.aligner->X_WA.R * attempt.planned.X_TP.R;
-    held = Carried{run.scene().planned_box(item), R_WP, attempt.X_PS, attempt.swing};
+    held = Carried{item, run.scene().planned_box(item), R_WP, attempt.X_PS, attempt.swing};
   }
   run.executor.run({item,
                     run.belief.now().items[item.slot()].id,
                     plan_return(run.scene(), run.executor.robot(), item, held),
                     {std::nullopt, true},
                     {}});
-}
-
-void take_over(Run& run) {
-  run.executor.refresh();
-  for (const model::ItemIndex item : run.options.resume->to_do)  // whoever resumes this session, too, has to know
-    run.log(event::ItemBrought{run.executor.time(), item, false});
-  constexpr double kAtStart = 0.02;  // m
-  const Pose& X_WE_start = run.belief.now().scenario.controller.X_WE_start;
-  const bool is_at_start = (run.executor.robot().X_WE.p - X_WE_start.p).norm() < kAtStart;
-  if (run.executor.is_holding()) return return_held(run);
-  if (!is_at_start && !run.agenda.order.empty()) retreat(run, run.agenda.order.front());
 }
 
 void forget_displacement(Run& run) {

@@ -184,7 +184,8 @@ Signal set_down(Run& run) {
   const planning::Attempt& attempt = *task.plan->best;
   run.belief.doubt_prediction();
   run.belief.let_go(task.item);
-  const Carried held{task.plan->box, run.cell.layout.X_WT.R * attempt.planned.X_TP.R, attempt.X_PS, attempt.swing};
+  const Carried held{task.item, task.plan->box, run.cell.layout.X_WT.R * attempt.planned.X_TP.R, attempt.X_PS,
+                     attempt.swing};
   run.executor.run({task.item, task.id, plan_to_bench(run.scene(), run.executor.robot(), held), {{}, true}, {}});
   if (!run.executor.has_completed()) return Signal::Finished;
   perceive(run);

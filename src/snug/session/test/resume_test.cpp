@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "snug/cell/drawn_scenario.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/session/session.hpp"
@@ -114,6 +116,76 @@ TEST(Resume, ABoxThatHangsFromTheCupGoesToTheAlignerFirst) {
   EXPECT_EQ(cell.plant.brought, std::vector<std::string>{"BOX028"});
   ASSERT_EQ(result.items.size(), 2U);
   EXPECT_TRUE(result.items[1].is_packed()) << result.items[1].reason;
+}
+
+/// The item that came first was let go and not counted, the next came meanwhile: it stands at the aligner.
+TEST(Resume, ABoxThatHangsGoesElsewhereWhereTheAlignerIsTaken) {
+  TakenOver cell;
+  cell.options.resume = [] {
+    EventLog log = killed_after<event::MotionStarted>(whole_log(), 1);
+    log.events.push_back(event::ItemBrought{1.0, model::ItemIndex(1), true});
+    return find_resume_point(log, "log");
+  }();
+  ASSERT_EQ(cell.options.resume->to_do.size(), 2U);
+  cell.plant.visible["BOX027"] = cell.hanging;
+  cell.plant.visible["BOX028"] = cell.standing;
+  cell.plant.happens = [&](int motion) {
+    if (motion == 1) cell.plant.visible.erase("BOX027");
+  };
+  (void)session::pack(two_boxes(), "1", cell.options, cell.plant);
+  ASSERT_FALSE(cell.plant.motions.empty());
+  const plant::Motion& first = cell.plant.motions.front();
+  EXPECT_EQ(first.item.value, "BOX027");
+  const auto let_go = std::ranges::find_if(first.waypoints, [](const auto& one) { return !one.io.vacuum; });
+  ASSERT_NE(let_go, first.waypoints.end());
+  EXPECT_GT((let_go->X_WE.p - cell.standing.p).head<2>().norm(), 0.3) << "not onto the one that stands there";
+}
+
+TEST(Resume, ABoxThatHangsHighIsLiftedNoHigher) {
+  TakenOver cell;
+  const double tool = cell.plant.sensors().X_WE.p.z();
+  cell.plant.visible["BOX028"] = cell.hanging;
+  (void)session::pack(two_boxes(), "1", cell.options, cell.plant);
+  ASSERT_FALSE(cell.plant.motions.empty());
+  EXPECT_LT(cell.plant.motions.front().waypoints.front().X_WE.p.z(), tool + 0.15) << "it is no obstacle to itself";
+}
+
+/// Held by its side: so the arm does not reach the aligner.
+TEST(Resume, ABoxThatIsHeldByItsSideIsTurnedUnderTheTool) {
+  TakenOver cell;
+  plant::Feedback& robot = cell.plant.sensors();
+  robot.X_WE.R = exp_rotation(-0.5 * std::numbers::pi * Vector3::UnitY()) * robot.X_WE.R;
+  const double half = 0.5 * model::collision_size(two_boxes(), *model::find_parcel(two_boxes(), "BOX028")).x();
+  cell.plant.visible["BOX028"] = {Matrix3::Identity(),
+                                  robot.X_WE * Vector3(0.0, 0.0, two_boxes().cup.hold_length + half)};
+  (void)session::pack(two_boxes(), "1", cell.options, cell.plant);
+  ASSERT_FALSE(cell.plant.motions.empty());
+  const auto& waypoints = cell.plant.motions.front().waypoints;
+  const auto let_go = std::ranges::find_if(waypoints, [](const auto& one) { return !one.io.vacuum; });
+  ASSERT_NE(let_go, waypoints.end());
+  EXPECT_LT(let_go->X_WE.R(2, 2), -0.99) << "the tool from above";
+}
+
+TEST(Resume, AStopOnTheWayOfWhatHangsIsReleasedAndAnotherWayTried) {
+  TakenOver cell;
+  const Pose X_EP = cell.plant.sensors().X_WE.inverse() * cell.hanging;
+  const auto hangs = [&X_EP](TakenOver& one) { one.plant.visible["BOX028"] = one.plant.sensors().X_WE * X_EP; };
+  hangs(cell);
+  cell.plant.ends = {plant::EndReason::ProtectiveStop, plant::EndReason::Timeout};
+  cell.plant.happens = [&](int motion) {
+    hangs(cell);
+    if (motion == 3) cell.plant.visible["BOX028"] = cell.standing;
+    if (motion == 4) cell.plant.visible.erase("BOX028");
+  };
+  const SessionResult result = session::pack(two_boxes(), "1", cell.options, cell.plant);
+  EXPECT_GE(cell.plant.acknowledged, 1);
+  ASSERT_EQ(result.items.size(), 2U);
+  EXPECT_TRUE(result.items[1].is_packed()) << result.items[1].reason;
+  TakenOver stuck;
+  hangs(stuck);
+  stuck.plant.happens = [&](int) { hangs(stuck); };
+  stuck.plant.ends.assign(100, plant::EndReason::ProtectiveStop);
+  EXPECT_THROW((void)session::pack(two_boxes(), "1", stuck.options, stuck.plant), InputError) << "not for ever";
 }
 
 TEST(Resume, ABoxInTheCupThatNobodySeesIsRefusedBeforeAnythingMoves) {
