@@ -15,7 +15,8 @@ constexpr int kServoGain = 2000;
 constexpr double kFarAway = 0.06;
 // s, in which the difference to targets that came back falls to a third.
 constexpr double kReturnTime = 0.16;
-constexpr double kBraking = 8.0;  // rad/s^2
+// rad/s^2: of what is left of a joint's speed when the targets have come to rest.
+constexpr double kBraking = 20.0;
 
 std::string read_six(int first) {
   std::string text = "[";
@@ -47,7 +48,9 @@ std::string follow_script(const served_ur::UrArm& arm, bool zeroes, std::int32_t
   played = count
   silent = 0.0
   late = 0
+  rate = 1.0
   is_late = False
+  is_lost = False
   has_begun = False
   state = 1
   write_output_integer_register({late}, 0)
@@ -77,12 +80,15 @@ std::string follow_script(const served_ur::UrArm& arm, bool zeroes, std::int32_t
       played = now
     elif mode == 2:
       state = 2
-    elif played > now and is_new == False:
+    elif is_lost or (played > now and is_new == False):
       late = late + 1
       is_late = True
-      rate = 1.0
-      if silent > {coast}:
-        rate = 1.0 - (silent - {coast}) / {fade}
+      if is_lost or silent > {coast}:
+        rate = rate - period / {fade}
+      end
+      if rate < 0.0:
+        rate = 0.0
+        state = 3
       end
       target = target + rate * speed
     else:
@@ -103,12 +109,15 @@ std::string follow_script(const served_ur::UrArm& arm, bool zeroes, std::int32_t
         j = 0
         while j < 6:
           if offset[j] > {far} or offset[j] < -{far}:
-            state = 3
+            is_lost = True
           end
           j = j + 1
         end
       end
-      if state == 1:
+      if is_lost:
+        target = target + rate * speed
+      else:
+        rate = 1.0
         offset = keep * offset
         goal = q + offset
         speed = goal + (-1.0) * target

@@ -9,8 +9,9 @@
 namespace snug::remote_ur {
 
 /// s, without a new command: the arm goes on for kCoast as it went, comes to rest within kFade, and the program ends.
+/// Joints that brake with 12 rad/s^2 follow that from 1.6 rad/s; docs/ur.md adds up what it takes at most.
 inline constexpr double kCoast = 0.016;
-inline constexpr double kFade = 0.1;
+inline constexpr double kFade = 0.135;
 
 /// A URScript program. It sets the TCP to frame E and the payload to the gripper, then gives the joints a target each
 /// period (servoj), as RobotCommand says; docs/ur.md has the registers. `zeroes`: it zeroes the force sensor first,

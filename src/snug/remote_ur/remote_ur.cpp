@@ -20,7 +20,7 @@ using internal::is_on;
 using internal::kLongestBraking;
 
 constexpr double kStartPatience = 5.0;    // s, until a program that was sent runs
-constexpr double kUnlockPatience = 15.0;  // s: robots take 5 s before they let a stop be released
+constexpr double kUnlockPatience = 30.0;  // s: robots take 5 s of theirs before they let a stop be released
 constexpr double kUnlockEach = 1.0;       // s, between attempts
 
 control::JointMotion at_rest(const ur::Values6& q) {

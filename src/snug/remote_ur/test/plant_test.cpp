@@ -224,6 +224,49 @@ TEST(RemoteUr, ASilentClientStopsTheRobotWithItsVacuumOn) {
   EXPECT_EQ(cell.go({box().over(0.3, "home", true)}).end.reason, EndReason::Completed);
 }
 
+/// From the period in which the last command comes, at the highest speed that a joint is driven with: also where the
+/// targets had been late and came back too far away.
+TEST(RemoteUr, TheRobotStandsWithinAFifthOfASecondOfTheLastCommand) {
+  for (const ur::Model kind : {ur::Model::Ur10, ur::Model::Ur10e}) {
+    for (const bool comes_back_far : {false, true}) {
+      SCOPED_TRACE(testing::Message() << (kind == ur::Model::Ur10 ? "8 ms" : "2 ms") << comes_back_far);
+      model::Scenario served = scenario();
+      served.controller.tick = kind == ur::Model::Ur10 ? 0.008 : 0.002;
+      SteppedLink link(served, "1", kind);
+      const served_ur::UrArm arm(served_ur::test::demonstrator_cell());
+      const ur::RobotData& data = link.controller().data();
+      (void)link.start(follow_script(arm, false, 3));
+      RobotSample sample;
+      RobotCommand command;
+      command.mode = RobotCommand::Mode::Moves;
+      command.q.fill(data.target_q);
+      const double fastest = scenario().robot->velocity_fraction * arm.facts().joint_speed[5];
+      double speed = 0.0;
+      while (speed < fastest) {
+        speed = std::min(fastest, speed + 10.0 * link.period());
+        command.q = {command.q[0], command.q[0], command.q[1]};
+        command.q[0][5] -= speed * link.period();
+        ++command.count;
+        ASSERT_EQ(link.exchange(command, sample), "");
+      }
+      ASSERT_NEAR(std::abs(data.target_qd[5]), fastest, 1e-6);
+      ASSERT_NEAR(std::abs(data.actual_qd[5]), fastest, 0.02);
+      if (comes_back_far) {
+        for (int i = 0; i < 3; ++i) link.controller().step();
+        for (auto& q : command.q) q[5] += 0.5;
+        command.count += 4;
+        ASSERT_EQ(link.exchange(command, sample), "");
+      }
+      const double before = data.timestamp;
+      while (data.timestamp < before + 0.2 - 1e-9) link.controller().step();
+      EXPECT_LT(std::abs(data.actual_qd[5]), 5e-3) << "rad/s";
+      EXPECT_EQ(data.runtime_state, ur::RuntimeState::Stopped);
+      EXPECT_EQ(data.outputs.ints[kFirstRegister], script_word(3, ScriptState::Silent));
+      EXPECT_EQ(data.safety_mode, ur::SafetyMode::Normal);
+    }
+  }
+}
+
 TEST(RemoteUr, ARobotThatIsGoneIsAFaultAndNothingFollows) {
   Cell cell;
   ASSERT_TRUE(plant::bring_and_wait(*cell.plant, first_box()));
