@@ -128,7 +128,7 @@ def acceptance(words):
 
 
 UR_PACK = ["--samples", "0", "--decision-time", "0.2"]
-UR_PLANTS = (1, 2)
+UR_PLANTS = (1, 2, 3)
 
 
 def serve_ur(words, sequence, plant, boxes):
@@ -201,7 +201,7 @@ def ur(words):
 
 def ur_frames(words):
     """The same with a camera that is a program of its own, beside the simulated camera in one process."""
-    return {"ur-frames": ur_table(words, ("camera", "frames"), (1,), ("1", "2"))}
+    return {"ur-frames": ur_table(words, ("camera", "frames"), (1,), SEQUENCES)}
 
 
 MAKERS = {"first-run": first_run, "sessions": sessions, "acceptance": acceptance, "ur": ur, "ur-frames": ur_frames}

@@ -230,6 +230,7 @@ bool RemoteUr::bring(const model::ParcelId& item) {
   if (options_.boxes) (void)options_.boxes(boxes);  // without an answer the sensor tells
   const std::lock_guard lock(mutex_);
   if (std::ranges::find(boxes, item.value, &perception::SceneBox::item) != boxes.end()) in_the_cell_.insert(item.value);
+  if (!failure_.empty()) told_.end = {plant::EndReason::Fault, std::nullopt, 0.0, 0.0, failure_};  // that is why
   if (found == sequence_.items.end() || was_brought_[index] || !failure_.empty()) return false;
   was_brought_[index] = true;
   awaited_.push_back(item);

@@ -171,7 +171,7 @@ bool Controller::obey(std::string_view line) {
   else if (line == "set robotmode run")
     release_brakes();
   else if (line == "set unlock protective stop")
-    (void)unlock_protective_stop();
+    is_unlock_wanted_ = data_.safety_mode == SafetyMode::ProtectiveStop;
   else if (line == "stop program")
     stop_program();
   else
@@ -249,6 +249,7 @@ void Controller::run_programs() {
 }
 
 void Controller::advance_mode() {
+  if (is_unlock_wanted_) is_unlock_wanted_ = !unlock_protective_stop();
   const double since = static_cast<double>(period_ - mode_since_) * period_of(settings_.model);
   if (since < kPowerTime) return;
   if (data_.robot_mode == RobotMode::PowerOn) {
@@ -313,6 +314,7 @@ void Controller::stop_for_protection(const std::string& why) {
   stand();
   programs_->abort();
   stopped_since_ = period_;
+  is_unlock_wanted_ = false;
   tell(ur::error_message(data_.timestamp, 157, 0, kWarning, why));
   set_safety(SafetyMode::ProtectiveStop);
 }

@@ -98,7 +98,7 @@ class Controller {
   [[nodiscard]] const std::string& program_error() const { return program_error_; }
 
   /// A line of the script ports that is a command of its own: `power on`, `power off`, `set robotmode run`,
-  /// `set unlock protective stop`, `stop program`. False: it is none.
+  /// `set unlock protective stop` (as soon as it may be), `stop program`. False: it is none.
   bool obey(std::string_view line);
 
   /// Ends the run, if there is one.
@@ -155,6 +155,7 @@ class Controller {
   std::int64_t period_ = 0;
   std::int64_t mode_since_ = 0;         ///< period
   std::int64_t stopped_since_ = 0;      ///< period of the last protective stop
+  bool is_unlock_wanted_ = false;       ///< by a script port, as soon as it may be
   bool wants_brakes_released_ = false;  ///< once it is idle
   std::vector<std::string> messages_;
 };

@@ -3,6 +3,7 @@
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -290,6 +291,25 @@ TEST(RemoteUr, ARobotThatIsGoneIsAFaultAndNothingFollows) {
   EXPECT_FALSE(cell.plant->bring(model::ParcelId(scenario().sequences.front().items[1].parcel)));
   EXPECT_EQ(cell.go(box().pick()).end.reason, EndReason::Refused);
   EXPECT_EQ(cell.plant->finish(), "the connection was closed");
+}
+
+/// While it stands and nobody asks for anything: who asks for a box then is told that the plant has failed.
+TEST(RemoteUr, ARobotThatGoesWhileItStandsBringsNothingAndSaysWhy) {
+  std::atomic<bool> is_gone = false;
+  RemoteUrOptions options;
+  auto owned = std::make_unique<SteppedLink>(scenario(), "1");
+  owned->watch = [&is_gone, link = owned.get()] {
+    if (is_gone) link->trouble = "the connection was closed";
+  };
+  options.link = std::move(owned);
+  options.perception = perception::make_perception(perception::Kind::DeadReckoning, 1);
+  options.motions.tracking = motion::FastTracking{};
+  RemoteUr plant(scenario(), "1", std::move(options));
+  is_gone = true;
+  EXPECT_EQ(plant.finish(), "the connection was closed");
+  EXPECT_FALSE(plant.bring(first_box()));
+  EXPECT_EQ(plant.read().end.reason, EndReason::Fault) << "no end of the items";
+  EXPECT_EQ(plant.read().end.where, "the connection was closed");
 }
 
 /// A client dies with a box in the cup; the next one takes the outputs as they are and has the box that came before.

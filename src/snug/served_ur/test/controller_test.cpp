@@ -247,6 +247,18 @@ TEST(Controller, ATargetFarAwayStopsForProtectionAndIsNoException) {
   }
 }
 
+TEST(Controller, AStopThatIsToBeReleasedTooEarlyIsReleasedWhenItMayBe) {
+  Controller controller(demonstrator_cell(), {});
+  controller.run_program("protective_stop()\n");
+  step(controller, 10);
+  EXPECT_EQ(controller.data().safety_mode, ur::SafetyMode::ProtectiveStop);
+  EXPECT_TRUE(controller.obey("set unlock protective stop"));
+  step(controller, 600);
+  EXPECT_EQ(controller.data().safety_mode, ur::SafetyMode::ProtectiveStop);
+  step(controller, 20);
+  EXPECT_EQ(controller.data().safety_mode, ur::SafetyMode::Normal);
+}
+
 TEST(Controller, AWatchdogPausesAProgramWhoseInputNobodySets) {
   Controller controller(demonstrator_cell(), {});
   ur::InputOwners owners;

@@ -38,8 +38,10 @@ std::optional<model::ItemIndex> find_held(Run& run) {
 /// Down where it can be picked again. What else came is where it was. A robot that stopped on the way tries the next of
 /// the ways that there are, from where it stopped.
 void put_held_down(Run& run) {
+  constexpr double kLifted = 0.01;  // m
   const int most_stops = run.belief.now().scenario.recovery.most_stops;
-  for (int stops = 0;; ++stops) {
+  bool is_lifted = false;
+  for (int stops = 0;;) {
     const std::optional<model::ItemIndex> held = find_held(run);
     if (!held) leave_to_hand("a box that hangs from it and is not seen there");
     const planning::Scene scene = run.scene();
@@ -48,18 +50,25 @@ void put_held_down(Run& run) {
     const Pose X_PS = scene.X_WP(*held).inverse() * run.executor.robot().X_WE * X_ES;
     const auto ways = plan_put_aside(scene, run.executor.robot(), *held, X_PS);
     if (ways.empty()) leave_to_hand(id + ", for which there is no free place that the arm reaches");
-    const std::size_t way = std::min(static_cast<std::size_t>(stops), ways.size() - 1);
-    run.executor.run({*held, id, ways[way], {std::nullopt, true}, {}});
-    const plant::EndReason end = run.executor.robot().end.reason;
-    const bool may_try = end == plant::EndReason::ProtectiveStop || end == plant::EndReason::Timeout;
-    if (!run.executor.has_completed() && run.executor.is_holding()) {
-      if (!may_try || stops >= most_stops)
-        leave_to_hand(id + ", which cannot be put down: " + run.executor.describe_end());
-      run.executor.acknowledge();
+    std::vector<motion::Waypoint> way = ways[std::min(static_cast<std::size_t>(stops), ways.size() - 1)];
+    // It may lean on something or be pressed on it: how it hangs shows when it is up.
+    is_lifted = is_lifted || way.front().X_WE.p.z() - run.executor.robot().X_WE.p.z() < kLifted;
+    if (!is_lifted) way.resize(1);
+    run.executor.run({*held, id, std::move(way), {std::nullopt, true}, {}});
+    if (run.executor.has_completed()) {
+      if (std::exchange(is_lifted, true)) break;
       continue;
     }
-    if (!run.executor.has_completed()) retreat(run, *held);
-    break;
+    if (!run.executor.is_holding()) {
+      retreat(run, *held);
+      break;
+    }
+    const plant::EndReason end = run.executor.robot().end.reason;
+    const bool may_try = end == plant::EndReason::ProtectiveStop || end == plant::EndReason::Timeout;
+    if (!may_try || ++stops > most_stops)
+      leave_to_hand(id + ", which cannot be put down: " + run.executor.describe_end());
+    run.executor.acknowledge();
+    is_lifted = false;
   }
   for (const model::ItemIndex item : run.options.resume->to_do) run.belief.forget(item);  // they are brought
 }

@@ -90,29 +90,51 @@ struct TakenOver {
     const double half = 0.5 * model::collision_size(scenario, parcel).z();
     hanging = Pose{Matrix3::Identity(), robot.X_WE * Vector3(0.0, 0.0, scenario.cup.hold_length + half)};
     standing = cell::arrival_pose(scenario, scenario.sequences.front().items[1]);
+    X_EP = robot.X_WE.inverse() * hanging;
+  }
+  /// The box hangs where the tool is.
+  void hang(const std::string& box) {
+    const Pose& X_WE = plant.sensors().X_WE;
+    plant.visible[box] = X_WE * X_EP;
+  }
+  /// The motion that puts down what hangs; before it the tool may go straight up.
+  [[nodiscard]] const plant::Motion& put_down() const {
+    static const plant::Motion none;
+    const auto found = std::ranges::find_if(plant.motions, [](const plant::Motion& one) {
+      return std::ranges::any_of(one.waypoints, [](const auto& waypoint) { return !waypoint.io.vacuum; });
+    });
+    return found != plant.motions.end() ? *found : none;
   }
   ScriptedPlant plant;
   SessionOptions options;
-  Pose hanging, standing;
+  Pose hanging, standing, X_EP;
 };
+
+Pose let_go_of(const plant::Motion& motion) {
+  const auto let_go = std::ranges::find_if(motion.waypoints, [](const auto& one) { return !one.io.vacuum; });
+  EXPECT_NE(let_go, motion.waypoints.end());
+  return let_go != motion.waypoints.end() ? let_go->X_WE : Pose();
+}
 
 TEST(Resume, ABoxThatHangsFromTheCupGoesToTheAlignerFirst) {
   TakenOver cell;
   EXPECT_EQ(cell.options.resume->to_do, std::vector{model::ItemIndex(1)});
-  cell.plant.visible["BOX028"] = cell.hanging;
-  cell.plant.happens = [&](int motion) {
-    if (motion == 1) cell.plant.visible["BOX028"] = cell.standing;
-    if (motion == 2) cell.plant.visible.erase("BOX028");  // as rehearsed
+  cell.hang("BOX028");
+  bool is_down = false;
+  cell.plant.happens = [&](int) {
+    if (is_down) cell.plant.visible.erase("BOX028");  // as rehearsed
+    if (is_down) return;
+    is_down = !cell.put_down().waypoints.empty();
+    cell.hang("BOX028");
+    if (is_down) cell.plant.visible["BOX028"] = cell.standing;
   };
   const SessionResult result = session::pack(two_boxes(), "1", cell.options, cell.plant);
   ASSERT_GE(cell.plant.motions.size(), 2U);
-  const plant::Motion& first = cell.plant.motions.front();
+  const plant::Motion& first = cell.put_down();
   EXPECT_EQ(first.item.value, "BOX028");
   EXPECT_TRUE(first.waypoints.front().io.vacuum);
   EXPECT_GE(first.waypoints.front().X_WE.p.z(), cell.plant.sensors().X_WE.p.z() - 1.0);
-  const auto let_go = std::ranges::find_if(first.waypoints, [](const auto& one) { return !one.io.vacuum; });
-  ASSERT_NE(let_go, first.waypoints.end());
-  EXPECT_LT((let_go->X_WE.p - cell.standing.p).head<2>().norm(), 0.15) << "beside the aligner's corner";
+  EXPECT_LT((let_go_of(first).p - cell.standing.p).head<2>().norm(), 0.15) << "beside the aligner's corner";
   EXPECT_EQ(cell.plant.brought, std::vector<std::string>{"BOX028"});
   ASSERT_EQ(result.items.size(), 2U);
   EXPECT_TRUE(result.items[1].is_packed()) << result.items[1].reason;
@@ -127,63 +149,63 @@ TEST(Resume, ABoxThatHangsGoesElsewhereWhereTheAlignerIsTaken) {
     return find_resume_point(log, "log");
   }();
   ASSERT_EQ(cell.options.resume->to_do.size(), 2U);
-  cell.plant.visible["BOX027"] = cell.hanging;
+  cell.hang("BOX027");
   cell.plant.visible["BOX028"] = cell.standing;
-  cell.plant.happens = [&](int motion) {
-    if (motion == 1) cell.plant.visible.erase("BOX027");
+  cell.plant.happens = [&](int) {
+    cell.hang("BOX027");
+    if (!cell.put_down().waypoints.empty()) cell.plant.visible.erase("BOX027");
   };
   (void)session::pack(two_boxes(), "1", cell.options, cell.plant);
-  ASSERT_FALSE(cell.plant.motions.empty());
-  const plant::Motion& first = cell.plant.motions.front();
-  EXPECT_EQ(first.item.value, "BOX027");
-  const auto let_go = std::ranges::find_if(first.waypoints, [](const auto& one) { return !one.io.vacuum; });
-  ASSERT_NE(let_go, first.waypoints.end());
-  EXPECT_GT((let_go->X_WE.p - cell.standing.p).head<2>().norm(), 0.3) << "not onto the one that stands there";
+  EXPECT_EQ(cell.put_down().item.value, "BOX027");
+  EXPECT_GT((let_go_of(cell.put_down()).p - cell.standing.p).head<2>().norm(), 0.3) << "not onto what stands there";
 }
 
 TEST(Resume, ABoxThatHangsHighIsLiftedNoHigher) {
   TakenOver cell;
   const double tool = cell.plant.sensors().X_WE.p.z();
-  cell.plant.visible["BOX028"] = cell.hanging;
+  cell.hang("BOX028");
+  cell.plant.happens = [&](int) { cell.hang("BOX028"); };
   (void)session::pack(two_boxes(), "1", cell.options, cell.plant);
   ASSERT_FALSE(cell.plant.motions.empty());
   EXPECT_LT(cell.plant.motions.front().waypoints.front().X_WE.p.z(), tool + 0.15) << "it is no obstacle to itself";
 }
 
-/// Held by its side: so the arm does not reach the aligner.
+/// Held by its side: so the arm does not reach the aligner. And low: it is looked at again when it is up.
 TEST(Resume, ABoxThatIsHeldByItsSideIsTurnedUnderTheTool) {
   TakenOver cell;
   plant::Feedback& robot = cell.plant.sensors();
   robot.X_WE.R = exp_rotation(-0.5 * std::numbers::pi * Vector3::UnitY()) * robot.X_WE.R;
+  robot.X_WE.p.z() -= 0.3;
   const double half = 0.5 * model::collision_size(two_boxes(), *model::find_parcel(two_boxes(), "BOX028")).x();
-  cell.plant.visible["BOX028"] = {Matrix3::Identity(),
-                                  robot.X_WE * Vector3(0.0, 0.0, two_boxes().cup.hold_length + half)};
+  const Pose beside{Matrix3::Identity(), robot.X_WE * Vector3(0.0, 0.0, two_boxes().cup.hold_length + half)};
+  cell.X_EP = robot.X_WE.inverse() * beside;
+  cell.hang("BOX028");
+  cell.plant.happens = [&](int) { cell.hang("BOX028"); };
   (void)session::pack(two_boxes(), "1", cell.options, cell.plant);
   ASSERT_FALSE(cell.plant.motions.empty());
-  const auto& waypoints = cell.plant.motions.front().waypoints;
-  const auto let_go = std::ranges::find_if(waypoints, [](const auto& one) { return !one.io.vacuum; });
-  ASSERT_NE(let_go, waypoints.end());
-  EXPECT_LT(let_go->X_WE.R(2, 2), -0.99) << "the tool from above";
+  EXPECT_EQ(cell.plant.motions.front().waypoints.size(), 1U) << "straight up";
+  EXPECT_LT(let_go_of(cell.put_down()).R(2, 2), -0.99) << "the tool from above";
 }
 
 TEST(Resume, AStopOnTheWayOfWhatHangsIsReleasedAndAnotherWayTried) {
   TakenOver cell;
-  const Pose X_EP = cell.plant.sensors().X_WE.inverse() * cell.hanging;
-  const auto hangs = [&X_EP](TakenOver& one) { one.plant.visible["BOX028"] = one.plant.sensors().X_WE * X_EP; };
-  hangs(cell);
+  cell.hang("BOX028");
   cell.plant.ends = {plant::EndReason::ProtectiveStop, plant::EndReason::Timeout};
+  bool is_down = false;
   cell.plant.happens = [&](int motion) {
-    hangs(cell);
-    if (motion == 3) cell.plant.visible["BOX028"] = cell.standing;
-    if (motion == 4) cell.plant.visible.erase("BOX028");
+    if (is_down) cell.plant.visible.erase("BOX028");
+    if (is_down) return;
+    is_down = motion > 2 && cell.plant.motions.back().waypoints.size() > 1;
+    cell.hang("BOX028");
+    if (is_down) cell.plant.visible["BOX028"] = cell.standing;
   };
   const SessionResult result = session::pack(two_boxes(), "1", cell.options, cell.plant);
   EXPECT_GE(cell.plant.acknowledged, 1);
   ASSERT_EQ(result.items.size(), 2U);
   EXPECT_TRUE(result.items[1].is_packed()) << result.items[1].reason;
   TakenOver stuck;
-  hangs(stuck);
-  stuck.plant.happens = [&](int) { hangs(stuck); };
+  stuck.hang("BOX028");
+  stuck.plant.happens = [&](int) { stuck.hang("BOX028"); };
   stuck.plant.ends.assign(100, plant::EndReason::ProtectiveStop);
   EXPECT_THROW((void)session::pack(two_boxes(), "1", stuck.options, stuck.plant), InputError) << "not for ever";
 }
