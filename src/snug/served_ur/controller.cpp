@@ -121,6 +121,7 @@ void Controller::set_mode(RobotMode mode) {
 
 void Controller::set_safety(SafetyMode mode) {
   data_.safety_mode = mode;
+  tell(ur::robot_state(data_, robot(), model()));  // at once: clients ask the last state whether a stop is released
   tell(ur::safety_mode_message(data_.timestamp, mode));
 }
 

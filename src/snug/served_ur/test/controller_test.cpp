@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -242,8 +243,9 @@ TEST(Controller, ATargetFarAwayStopsForProtectionAndIsNoException) {
     EXPECT_EQ(controller.data().safety_mode, ur::SafetyMode::ProtectiveStop) << body;
     EXPECT_NE(controller.program_error(), "") << body;
     for (std::size_t j = 0; j < before.size(); ++j) EXPECT_NEAR(controller.data().actual_q[j], before[j], 1e-3);
-    constexpr char kRuntimeException = 10;
-    for (const std::string& packet : controller.take_messages()) EXPECT_NE(packet[14], kRuntimeException) << body;
+    constexpr char kMessage = 20, kRuntimeException = 10;
+    for (const std::string& packet : controller.take_messages())
+      EXPECT_FALSE(packet[4] == kMessage && packet[14] == kRuntimeException) << body;
   }
 }
 
@@ -252,6 +254,9 @@ TEST(Controller, AStopThatIsToBeReleasedTooEarlyIsReleasedWhenItMayBe) {
   controller.run_program("protective_stop()\n");
   step(controller, 10);
   EXPECT_EQ(controller.data().safety_mode, ur::SafetyMode::ProtectiveStop);
+  constexpr char kRobotState = 16;
+  EXPECT_TRUE(std::ranges::any_of(controller.take_messages(), [](const auto& one) { return one[4] == kRobotState; }))
+      << "the stop is told at once";
   EXPECT_TRUE(controller.obey("set unlock protective stop"));
   step(controller, 600);
   EXPECT_EQ(controller.data().safety_mode, ur::SafetyMode::ProtectiveStop);
