@@ -334,6 +334,10 @@ class Run(unittest.TestCase):
         self.assertIn("3:", self.call("run", broken, *self.cell, code=1).stderr)
         broken.write_text("def p():\n  halt\nend\n")
         self.assertIn("halted", self.call("run", broken, *self.cell, code=1).stderr)
+        broken.write_text("def p():\n  servoj([0, 0, 0, 0, 0, 0], t=0.008)\n  sleep(1)\nend\n")
+        self.assertIn("beyond its limit of position or speed", self.call("run", broken, *self.cell, code=1).stderr)
+        broken.write_text("def p():\n  rtde_set_watchdog(\"input_int_register_0\", 10)\n  sleep(9)\nend\n")
+        self.assertIn("no client sets the input", self.call("run", broken, *self.cell, code=1).stderr)
         self.assertIn("BOX027", self.call("run", self.script, *self.cell, "--skip", "BOX02", code=2).stderr)
 
 
