@@ -325,6 +325,12 @@ class Run(unittest.TestCase):
             else:  # what stood on the first box may lie elsewhere
                 self.assertIn(second, packed)
 
+    def test_a_line_that_is_asked_too_fast_is_made_slower(self):
+        fast = Path(self.folder.name) / "fast.script"
+        fast.write_text("def fast():\n  set_tcp(p[0, 0, 0, 0, 0, 0])\n  movej([-1.57, -1.6, 1.6, -0.7, 0.7, 0.2], a=3, v=1.5)\n"
+                        "  movel(p[-0.203, 0.263, 0.559, 0.68, -1.083, -2.076], a=1.4, v=1.04, t=0.1)\nend\n")
+        self.call("run", fast, *self.cell, "--model", "ur10e")
+
     def test_mistakes_are_told_with_their_place(self):
         broken = Path(self.folder.name) / "broken.script"
         broken.write_text("def p():\n  mvoej([0, 0, 0, 0, 0, 0])\nend\n")

@@ -22,11 +22,12 @@ using ur::RobotMode;
 using ur::RuntimeState;
 using ur::SafetyMode;
 
-constexpr double kPowerTime = 0.5;    ///< s, from power on to idle, and from there until the brakes are released
-constexpr double kMovingOut = 0.5;    // s, of motion after a stop that was released
-constexpr double kUnlockAfter = 5.0;  // s, that a protective stop lasts at least
-constexpr int kWarning = 2;           // level of an error message
-constexpr double kPartTime = 0.1;     // s, that a part which was asked for takes to come
+constexpr double kPowerTime = 0.5;  ///< s, from power on to idle, and from there until the brakes are released
+constexpr double kMovingOut = 0.5;  // s, of motion after a stop that was released
+constexpr int kStopByForce = 157, kStopAskedFor = 209;  // codes of error messages
+constexpr double kUnlockAfter = 5.0;                    // s, that a protective stop lasts at least
+constexpr int kWarning = 2;                             // level of an error message
+constexpr double kPartTime = 0.1;                       // s, that a part which was asked for takes to come
 constexpr std::size_t kMostMessages = 1000;
 
 /// The bit of a signal, as it stands where the signal says yes or no.
@@ -221,7 +222,7 @@ void Controller::run_programs() {
   const std::optional<std::string> stop = programs_->take_protective_stop();
   if (stop && data_.safety_mode == SafetyMode::Normal) {
     if (run_ && !is_ended_) run_->stand();
-    stop_for_protection(*stop);
+    stop_for_protection(*stop, kStopAskedFor);
     program_error_ = *stop;
   }
   data_.runtime_state = !programs_->is_active()  ? RuntimeState::Stopped
@@ -311,12 +312,12 @@ void Controller::stand() {
   data_.target_qd = data_.target_qdd = {};
 }
 
-void Controller::stop_for_protection(const std::string& why) {
+void Controller::stop_for_protection(const std::string& why, int code) {
   stand();
   programs_->abort();
   stopped_since_ = period_;
   is_unlock_wanted_ = false;
-  tell(ur::error_message(data_.timestamp, 157, 0, kWarning, why));
+  tell(ur::error_message(data_.timestamp, code, 0, kWarning, why));
   set_safety(SafetyMode::ProtectiveStop);
 }
 
@@ -327,7 +328,7 @@ void Controller::fail(const cell::Failure& failure) {
     run_->acknowledge();
     if (moving_out_ > 0) return;
     if (data_.safety_mode == SafetyMode::ProtectiveStop) return stand();
-    return stop_for_protection(failure.text);
+    return stop_for_protection(failure.text, kStopByForce);
   }
   end(failure.text);
   is_ended_ = true;

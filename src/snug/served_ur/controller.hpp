@@ -120,7 +120,7 @@ class Controller {
   [[nodiscard]] bool may_move() const;
   void hold();
   void stand();
-  void stop_for_protection(const std::string& why);
+  void stop_for_protection(const std::string& why, int code);
   void run_programs();
   void tell(std::string packet);
   void begin_run();

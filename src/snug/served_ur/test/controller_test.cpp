@@ -255,8 +255,12 @@ TEST(Controller, AStopThatIsToBeReleasedTooEarlyIsReleasedWhenItMayBe) {
   step(controller, 10);
   EXPECT_EQ(controller.data().safety_mode, ur::SafetyMode::ProtectiveStop);
   constexpr char kRobotState = 16;
-  EXPECT_TRUE(std::ranges::any_of(controller.take_messages(), [](const auto& one) { return one[4] == kRobotState; }))
-      << "the stop is told at once";
+  const std::vector<std::string> told = controller.take_messages();
+  EXPECT_TRUE(std::ranges::any_of(told, [](const auto& one) { return one[4] == kRobotState; })) << "at once";
+  constexpr char kMessage = 20, kError = 6, kAskedFor = static_cast<char>(209);
+  EXPECT_TRUE(std::ranges::any_of(told, [](const auto& one) {
+    return one[4] == kMessage && one[14] == kError && one[18] == kAskedFor;
+  })) << "with the code that clients know";
   EXPECT_TRUE(controller.obey("set unlock protective stop"));
   step(controller, 600);
   EXPECT_EQ(controller.data().safety_mode, ur::SafetyMode::ProtectiveStop);

@@ -86,8 +86,9 @@ void Motion::follow(const Host& host, double length, const MoveSettings& setting
   MoveSettings used = settings;
   std::vector<Joints> way;
   double blend_from = 0.0;
-  // A joint that would be too fast makes all of the move slower.
-  for (int round = 0; round < 3; ++round) {
+  // A joint that would be too fast makes all of the move slower; a slower one shows more of the way between its steps.
+  constexpr int kRounds = 10;
+  for (int round = 0; round < kRounds; ++round) {
     const Trapezoid profile(length, used);
     if (profile.duration > kLongestMove) throw Fault{"a move of more than 120 s"};
     const auto count = static_cast<std::size_t>(std::ceil(profile.duration / dt - 1e-9));
