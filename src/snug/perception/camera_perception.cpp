@@ -13,6 +13,8 @@ namespace snug::perception {
 namespace {
 
 constexpr double kBeyondWall = 0.05;  ///< m, a middle so far beyond the walls is outside the container
+/// m, around the tool: the wrist over it is 0.1 m wider, and a frame is taken while it moves.
+constexpr double kAroundTool = 0.12;
 
 const model::Container& container_of(const model::Scenario& scenario) {
   if (scenario.cameras.empty()) {
@@ -141,13 +143,55 @@ class Camera final : public DepthPerception {
   camera::CameraDraw draw_;
 };
 
-/// Frames come from elsewhere.
+/// What the tool, and the arm over it, may show of themselves.
+class ToolShadow {
+ public:
+  explicit ToolShadow(const model::Scenario& scenario) {
+    if (!scenario.tool) return;
+    shapes_ = scenario.tool->rod_shapes;
+    shapes_.insert(shapes_.end(), scenario.tool->cup_shapes.begin(), scenario.tool->cup_shapes.end());
+  }
+
+  /// Columns beside the tool that are higher than its lower end tell nothing of the container.
+  void leave_out(const Pose& X_WE, Observation& look) const {
+    if (shapes_.empty() || !look.obstacles || !look.heights) return;
+    Vector3 low = X_WE.p, high = X_WE.p;
+    for (const model::PlacedShape& one : shapes_) {
+      const geometry::Aabb box = geometry::bounds(one.shape, X_WE * one.X_BG);
+      low = low.cwiseMin(box.lower), high = high.cwiseMax(box.upper);
+    }
+    const auto is_tool = [&](int x, int y, double top) {
+      const Eigen::Vector2d middle = kColumnSide * Eigen::Vector2d(x + 0.5, y + 0.5);
+      return top > low.z() - kAroundTool && (middle.array() > low.head<2>().array() - kAroundTool).all() &&
+             (middle.array() < high.head<2>().array() + kAroundTool).all();
+    };
+    for (Obstacle& one : *look.obstacles)
+      std::erase_if(one.columns, [&](const Column& column) { return is_tool(column.x, column.y, column.top); });
+    std::erase_if(*look.obstacles, [](const Obstacle& one) { return one.columns.empty(); });
+    HeightMap& map = *look.heights;
+    for (std::size_t k = 0; k < map.height.size(); ++k) {
+      const int index = static_cast<int>(k);
+      if (is_tool(map.x + index % map.cols, map.y + index / map.cols, map.height[k]))
+        map.height[k] = HeightMap::kUnseen;
+    }
+  }
+
+ private:
+  std::vector<model::PlacedShape> shapes_;
+};
+
+/// Frames come from elsewhere. The robot may stand in the view.
 class Frames final : public DepthPerception {
  public:
   Frames(std::uint64_t seed, const model::Scenario& scenario, camera::FrameSource source)
-      : DepthPerception(seed, scenario), source_(std::move(source)) {}
+      : DepthPerception(seed, scenario), source_(std::move(source)), tool_(scenario) {}
 
   [[nodiscard]] std::string_view name() const override { return name_of(Kind::Frames); }
+  [[nodiscard]] Observation perceive(const Scene& scene, std::span<const Expectation> expected) override {
+    Observation observation = DepthPerception::perceive(scene, expected);
+    tool_.leave_out(scene.X_WE, observation);
+    return observation;
+  }
 
  private:
   [[nodiscard]] Expected<camera::Frame, std::string> take_frame(const Scene& scene, std::uint64_t look) override {
@@ -157,6 +201,7 @@ class Frames final : public DepthPerception {
   [[nodiscard]] bool looks_for(const Pose& X_WP) const override { return is_about_container(X_WP); }
 
   camera::FrameSource source_;
+  ToolShadow tool_;
 };
 
 }  // namespace

@@ -23,7 +23,8 @@ inline constexpr NoiseLevels kStationNoise{0.0009, 0.003, 0.0005};
                                                           const model::Scenario& scenario);
 
 /// As that, with Kind::Frames as well: each look asks `frames` for one. Boxes outside the container are measured by
-/// stations where the scene tells of them, and are not looked for elsewhere. Throws InputError for Kind::Frames without
+/// stations where the scene tells of them, and are not looked for elsewhere. What stands at the scene's tool is no
+/// obstacle. Throws InputError for Kind::Frames without
 /// a source.
 [[nodiscard]] std::unique_ptr<Perception> make_perception(Kind kind, std::uint64_t seed,
                                                           const model::Scenario& scenario, camera::FrameSource frames);

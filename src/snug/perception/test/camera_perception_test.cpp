@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "snug/camera/render.hpp"
 #include "snug/core/input_error.hpp"
 
 namespace snug::perception {
@@ -159,6 +161,34 @@ TEST(CameraPerception, NeedsACamera) {
   blind.cameras.clear();
   EXPECT_THROW((void)make_perception(Kind::Camera, 1, blind), InputError);
   EXPECT_EQ(make_perception(Kind::Exact, 1, blind)->name(), "exact");
+}
+
+TEST(CameraPerception, TheToolInAFrameIsNoObstacleAndWhatStandsElsewhereIs) {
+  const std::vector<SceneBox> boxes = {{"A", in_container(0.05, 0.15, 0.05), kSize}};
+  const Vector3 size(0.06, 0.06, 0.2);
+  const SceneBox tool{"tool", in_container(-0.05, -0.12, 0.3), size};
+  const SceneBox stranger{"stranger", in_container(0.12, -0.05, 0.03), Vector3(0.06, 0.05, 0.06)};
+  const camera::FrameSource source = [&](std::uint64_t look, double) -> Expected<camera::Frame, std::string> {
+    camera::Scene view = camera::make_surroundings(scenario());
+    for (const SceneBox* one : {&boxes.front(), &tool, &stranger})
+      camera::add_box(view, one->item, one->X_WP, one->size);
+    const model::CameraParams& params = scenario().cameras.front();
+    return camera::render(view, params, camera::draw_camera(params, 7), look).frame;
+  };
+  const auto look_with_tool_at = [&](const Vector3& p) {
+    const Pose X_WE{exp_rotation(Vector3(std::numbers::pi, 0.0, 0.0)), p};
+    return make_perception(Kind::Frames, 7, scenario(), source)->perceive({0.0, X_WE, boxes}, expectations(boxes));
+  };
+  const double low = tool.X_WP.p.z() - 0.5 * size.z() - 0.01;
+  const auto count_high = [&](const Observation& look) {
+    return std::ranges::count_if(look.heights->height, [&](float z) { return z > low; });
+  };
+  const Observation known = look_with_tool_at(tool.X_WP.p);
+  ASSERT_EQ(known.obstacles->size(), 1U);
+  EXPECT_LT(bounds_of(known.obstacles->front().columns).upper.z(), in_container(0.0, 0.0, 0.07).p.z());
+  const Observation elsewhere = look_with_tool_at(tool.X_WP.p + Vector3(0.0, 0.0, 1.0));
+  EXPECT_EQ(elsewhere.obstacles->size(), 2U);
+  EXPECT_LT(count_high(known), count_high(elsewhere));
 }
 
 }  // namespace
