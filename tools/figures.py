@@ -149,7 +149,7 @@ def pack_through_ur(words, sequence, plant, perception):
         boxes = f"ipc://{folder}/boxes"
         served, offset = serve_ur(words, sequence, plant, boxes)
         threading.Thread(target=served.stderr.read, daemon=True).start()
-        camera = f"{words.snug} camera {SCENARIO} --click {boxes} --sequence {sequence} --shot {{look}} -o {{frame}}.h5"
+        camera = f"{words.snug} camera {SCENARIO} --click {boxes} --sequence {sequence} --seed {plant} --shot {{look}} -o {{frame}}.h5"
         frames = ["--frames", camera] if perception == "frames" else []
         try:
             return json.loads(run([words.snug, "pack", SCENARIO, "--sequence", sequence, "--plant-seed", plant, *UR_PACK, "--plant", f"ur://127.0.0.1:{offset}",
@@ -200,8 +200,8 @@ def ur(words):
 
 
 def ur_frames(words):
-    """The same with a camera that is a program of its own, beside the simulated camera in one process."""
-    return {"ur-frames": ur_table(words, ("camera", "frames"), (1,), SEQUENCES)}
+    """The same with a camera that is a program of its own and sees the robot, beside the simulated camera in one process, with the same errors."""
+    return {"ur-frames": ur_table(words, ("camera", "frames"), (1, 2), SEQUENCES)}
 
 
 MAKERS = {"first-run": first_run, "sessions": sessions, "acceptance": acceptance, "ur": ur, "ur-frames": ur_frames}
