@@ -69,7 +69,7 @@ class CommandLine(unittest.TestCase):
                             (("simulate", DROP, "--unitl", "x"), "did you mean --until?"),
                             (("identify", "scene", "x.yaml", "--thraeds", 1), "did you mean --threads?"),
                             (("identify", "stifness", "x.json"), "did you mean stiffness?"),
-                            (("items",), "verb after items: got nothing; expected one of read, reduce, sequence"),
+                            (("items",), "verb after items: got nothing; expected one of draw, read, reduce, sequence"),
                             (("simulate", DROP, "--set", "contacts.pairs.box/flor.friction=0.1"), "nearest is 'box/floor'"),
                             ((*pack, "--sequence", 1, "--set", "contacts.pairs.box/cup.friction=0.1"), "box/gripper, box/lip")):
             with self.subTest(words=words):
