@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <spawn.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -30,6 +31,7 @@ namespace {
 
 constexpr std::size_t kLongestWord = 200;      // bytes
 constexpr std::chrono::seconds kPatience(10);  // for a process that was interrupted
+constexpr int kLessUrgent = 5;                 // more nice than the server and the browser
 constexpr std::array<const char*, 12> kEndings = {".txt",      ".jsonl", ".h5",  ".program.csv", ".html",     ".live",
                                                   ".operator", ".png",   ".glb", ".script",      ".ros.yaml", ".mcap"};
 
@@ -343,6 +345,8 @@ int Runs::run(const std::vector<std::string>& words, int output, const std::stri
     const std::lock_guard lock(mutex_);
     failed = is_ending_ ? ECANCELED
                         : ::posix_spawn(&process, program_.c_str(), &actions, &attributes, pointers.data(), environ);
+    // The page that shows a run comes first: a run takes all cores while it plans. Threads inherit this.
+    if (failed == 0) (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(process), kLessUrgent);
     if (failed == 0 && !name.empty()) {
       processes_[name] = process;
       if (interrupts_.contains(name)) ::kill(process, SIGINT);
