@@ -10,7 +10,7 @@ import type { Shell } from "./shell";
 import { decodeBase64, decodeReplay } from "../replay/decode";
 import { Replay } from "../replay/replay";
 import { Stage } from "./stage";
-import { canEditCup, canEditSize, setCupRadius, setInnerSize } from "./yaml_edit";
+import { canEditCup, canEditSize, metres, setCupRadius, setInnerSize } from "./yaml_edit";
 
 export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void } {
   const template = make("select");
@@ -56,6 +56,11 @@ export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void 
   });
 
   const fileName = (): string => `${name.value.trim()}.yaml`;
+  const asCommand = make("p", "hint edits");
+  /** `change`: key and value of the scenario. */
+  function tellCommand(change = ""): void {
+    asCommand.textContent = `As a command: snug check ${fileName()} --reach${change && ` --set "${change}"`}`;
+  }
   const target = (): number => (facts?.containers ?? []).findIndex((one) => one.name === facts!.target);
 
   function showForm(): void {
@@ -158,6 +163,7 @@ export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void 
     stage?.setParts(parts);
     text.value = writtenHere = done.text;
     shell.tell("");
+    tellCommand(`${key}.pose={position: [${to.position.map(metres).join(", ")}], yaw_deg: ${Number(to.yaw.toFixed(6))}}`);
     showNumbers();
     await check();
   }
@@ -177,8 +183,15 @@ export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void 
 
   async function edit(): Promise<void> {
     const size = sizes.map((input) => input.valueAsNumber);
-    if (!sizes[0]!.disabled && size.every((edge) => edge >= 10 && edge <= 20000)) text.value = setInnerSize(text.value, target(), size);
-    if (!radius.disabled && radius.valueAsNumber >= 1 && radius.valueAsNumber !== facts?.cup_radius_mm) text.value = setCupRadius(text.value, radius.valueAsNumber);
+    if (!sizes[0]!.disabled && size.every((edge) => edge >= 10 && edge <= 20000)) {
+      const before = text.value;
+      text.value = setInnerSize(before, target(), size);
+      if (text.value !== before) tellCommand(`containers.${facts?.target}.inner_size=[${size.map(metres).join(", ")}]`);
+    }
+    if (!radius.disabled && radius.valueAsNumber >= 1 && radius.valueAsNumber !== facts?.cup_radius_mm) {
+      text.value = setCupRadius(text.value, radius.valueAsNumber);
+      tellCommand(`cup.lip_radius=${metres(radius.valueAsNumber)}`);
+    }
     await check();
   }
 
@@ -204,6 +217,7 @@ export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void 
       await shell.refresh();
     }
     name.value = template.value;
+    asCommand.textContent = `As a command: snug init ${template.value}`;
     isOther = true;
     text.value = found.text;
     await check();
@@ -223,6 +237,7 @@ export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void 
     const done = await shell.attempt(() => api.write(fileName(), text.value));
     if (!done) return check();
     shell.tell(`${fileName()} is saved.`);
+    tellCommand();
     shell.remember({ scenario: fileName() });
     await shell.refresh();
   }
@@ -253,7 +268,7 @@ export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void 
         make("fieldset", "numbers edits", make("legend", "", "Main numbers"),
           field("Container length in mm", sizes[0]!), field("Container width in mm", sizes[1]!), field("Container height in mm", sizes[2]!),
           field("Cup radius in mm", radius), make("p", "", "The tempo is chosen with the run. Everything else is in the text.")),
-        tradeParts.element),
+        asCommand, tradeParts.element),
       make("div", "cell-right", reach.element, field("Text of the cell (YAML)", text, "wide"))));
   element.addEventListener("dragover", (event) => event.preventDefault());
   element.addEventListener("drop", (event) => {

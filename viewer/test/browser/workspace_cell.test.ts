@@ -161,13 +161,20 @@ describe("the cell of snug ui", () => {
     await page.getByRole("combobox", { name: "Part", exact: true }).selectOption("containers.tote");
     await page.getByLabel("y in mm").fill("50");
     await textHas(page, "[0.45, 0.05, 0.02]");
+    const changes: string[] = []; // as the page says them for the command line
+    const keepChange = async (): Promise<void> => {
+      changes.push("--set", /--set "(.*)"$/.exec(await page.getByText(/^As a command: snug check cell.yaml --reach/).innerText())![1]!);
+    };
+    await keepChange();
     await page.getByText(/This cell can be used/).waitFor();
     await page.getByRole("combobox", { name: "Part", exact: true }).selectOption("aligner");
     await page.getByLabel("x in mm").fill("-420");
     await textHas(page, "[-0.42, -0.1, 0.0]");
+    await keepChange();
     await page.getByText(/This cell can be used/).waitFor();
     await page.getByLabel("Container height in mm").fill("180");
     await textHas(page, "[0.4, 0.3, 0.18]");
+    await keepChange();
     await page.getByLabel("Name of the cell").fill("by-page");
     await page.getByRole("button", { name: "Save cell" }).click();
     await page.getByText("by-page.yaml is saved.").waitFor();
@@ -175,12 +182,14 @@ describe("the cell of snug ui", () => {
       .replace("position: [0.45, 0.0, 0.02]}, inner_size: [0.400, 0.300, 0.200]", "position: [0.450, 0.050, 0.020]}, inner_size: [0.40, 0.30, 0.18]")
       .replace("position: [-0.40, -0.10, 0.0]", "position: [-0.420, -0.100, 0]");
     writeFileSync(join(folder, "by-hand.yaml"), hand);
-    const hashOf = (name: string): string => {
-      const said = snug("pack", join(folder, `${name}.yaml`), "--items", join(folder, "mine.csv"), "--sequence", "mine", "--samples", "0", "--json");
+    const hashOf = (path: string, more: string[] = []): string => {
+      const said = snug("pack", path, "--items", join(folder, "mine.csv"), "--sequence", "mine", "--samples", "0", "--json", ...more);
       return (JSON.parse(said) as { state_hash: string }).state_hash;
     };
-    expect(hashOf("by-page")).toMatch(/^[0-9a-f]{16}$/);
-    expect(hashOf("by-page")).toBe(hashOf("by-hand"));
+    const byHand = hashOf(join(folder, "by-hand.yaml"));
+    expect(hashOf(join(repository, "scenarios/init/cell.yaml"), changes)).toBe(byHand);
+    expect(byHand).toMatch(/^[0-9a-f]{16}$/);
+    expect(hashOf(join(folder, "by-page.yaml"))).toBe(byHand);
     expect(errors).toEqual([]);
     await page.context().close();
   }, PATIENCE);
