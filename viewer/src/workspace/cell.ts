@@ -225,7 +225,7 @@ export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void 
 
   async function open(): Promise<void> {
     if (!saved.value) return;
-    const checked = await shell.attempt(() => api.facts(saved.value));
+    const checked = await shell.attempt(() => shell.open(saved.value));
     if (!checked) return;
     name.value = saved.value.replace(/\.yaml$/, "");
     isOther = true;
@@ -234,7 +234,8 @@ export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void 
   }
 
   async function save(): Promise<void> {
-    const done = await shell.attempt(() => api.write(fileName(), text.value));
+    const done = await shell.attempt(() => shell.write(fileName(), text.value));
+    if (done === false) return shell.tell(`${fileName()} is left as it was: give this cell another name, or open that one.`);
     if (!done) return check();
     shell.tell(`${fileName()} is saved.`);
     tellCommand();

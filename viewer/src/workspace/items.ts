@@ -183,7 +183,7 @@ export function makeItems(shell: Shell): { element: HTMLElement; refresh(): void
 
   async function open(): Promise<void> {
     if (!saved.value) return;
-    const checked = await shell.attempt(() => api.facts(saved.value));
+    const checked = await shell.attempt(() => shell.open(saved.value));
     if (!checked) return;
     name.value = saved.value.replace(/\.csv$/, "");
     text.value = checked.text;
@@ -192,7 +192,7 @@ export function makeItems(shell: Shell): { element: HTMLElement; refresh(): void
 
   async function save(): Promise<void> {
     try {
-      await api.write(fileName(), text.value);
+      if (!(await shell.write(fileName(), text.value))) return shell.tell(`${fileName()} is left as it was: give these items another name, or open those.`);
       shell.tell(`${fileName()} is saved.`);
       shell.remember({ items: fileName() });
       await shell.refresh();

@@ -1,6 +1,7 @@
 // Shell: what the tabs share: the list of the folder, messages, and what was saved last.
 
-import { api, isGoingOn, Refused, type FolderList } from "./api";
+import { api, isGoingOn, Refused, type Checked, type FolderList } from "./api";
+import { choiceOf } from "./ask";
 import { make } from "./dom";
 
 const BETWEEN_LOOKS = 1500; // ms, while a run goes on or the program does not answer
@@ -12,6 +13,8 @@ export class Shell {
   readonly trouble = make("p", "trouble");
   onChange: () => void = () => undefined;
   private timer = 0;
+  /** Texts of files as this page read or wrote them last. */
+  private readonly known = new Map<string, string>();
 
   constructor() {
     this.message.setAttribute("role", "status");
@@ -33,6 +36,26 @@ export class Shell {
 
   remember(what: { scenario?: string; items?: string }): void {
     this.chosen = { ...this.chosen, ...what };
+  }
+
+  /** The text of a file that is opened. */
+  async open(name: string): Promise<Checked> {
+    const checked = await api.facts(name);
+    this.known.set(name, checked.text);
+    return checked;
+  }
+
+  /** Writes a file; asks first where there is one that this page does not know. False: it stays as it is. */
+  async write(name: string, text: string): Promise<boolean> {
+    const { can_be_written, scenarios, items } = await api.folder();
+    const there = can_be_written && [...scenarios, ...items].some((one) => one.name === name) ? (await api.facts(name)).text : text;
+    if (there !== text && there !== this.known.get(name)) {
+      const said = await choiceOf(`The folder has another ${name}, which was not written here. Save over it?`, [["yes", "Save over it"]]);
+      if (said === null) return false;
+    }
+    await api.write(name, text);
+    this.known.set(name, text);
+    return true;
   }
 
   async attempt<T>(call: () => Promise<T>): Promise<T | undefined> {

@@ -216,6 +216,34 @@ describe("the page of snug ui", () => {
     await page.context().close();
   });
 
+  it("asks before it saves over what another page saved", async () => {
+    const pages = [await openPage(), await openPage()];
+    for (const page of pages) {
+      await page.getByRole("tab", { name: "Cell" }).click();
+      await page.getByLabel("Open a cell of the folder").selectOption("cell.yaml");
+      await page.waitForFunction(() => (document.querySelector("textarea.tall") as HTMLTextAreaElement).value.includes("[0.4, 0.3, 0.18]"));
+    }
+    const saves = async (page: Page, height: string): Promise<void> => {
+      await page.getByLabel("Container height in mm").fill(height);
+      await page.waitForFunction((wanted) => (document.querySelector("textarea.tall") as HTMLTextAreaElement).value.includes(wanted), `[0.4, 0.3, 0.${height.slice(0, 2)}]`);
+      await page.getByRole("button", { name: "Save cell" }).click();
+    };
+    const [one, other] = pages as [Page, Page];
+    await saves(one, "170");
+    await one.getByText("cell.yaml is saved.").waitFor();
+    await saves(other, "190");
+    await other.getByRole("dialog", { name: /another cell.yaml/ }).waitFor();
+    await other.getByRole("button", { name: "Leave it as it is" }).click();
+    await other.getByText(/cell.yaml is left as it was/).waitFor();
+    expect(readFileSync(join(folder, "cell.yaml"), "utf8")).toContain("[0.4, 0.3, 0.17]");
+    await other.getByRole("button", { name: "Save cell" }).click();
+    await other.getByRole("button", { name: "Save over it" }).click();
+    await other.getByText("cell.yaml is saved.").waitFor();
+    expect(readFileSync(join(folder, "cell.yaml"), "utf8")).toContain("[0.4, 0.3, 0.19]");
+    expect(errors).toEqual([]);
+    for (const page of pages) await page.context().close();
+  });
+
   it("says so when the program was killed in the middle of a run, and goes on with its folder", async () => {
     const page = await openPage();
     await page.getByRole("tab", { name: "Run" }).click();
