@@ -304,6 +304,7 @@ describe("a run of snug ui", () => {
       for (const tab of ["Items", "Cell", "Run", "Compare", "Take away"]) {
         await page.getByRole("tab", { name: tab }).click();
         if (tab === "Items") await page.getByRole("button", { name: "Use the example" }).click();
+        if (tab === "Cell" && width > 390) await page.getByText("Cup by its data sheet").click();
         if (tab === "Run") await page.getByRole("button", { name: "Show" }).first().click();
         if (tab === "Compare") await page.getByText("Boxes an hour").first().waitFor();
         expect(await serious(page), `${tab} at ${width}`).toEqual([]);
