@@ -13,7 +13,7 @@ namespace snug::perception {
 namespace {
 
 constexpr double kBeyondWall = 0.05;  ///< m, a middle so far beyond the walls is outside the container
-/// m, around the tool: the wrist over it is 0.1 m wider, and a frame is taken while it moves.
+/// m, around the tool: for the wrist over it, and because a frame is taken while it moves. Chosen for a UR10.
 constexpr double kAroundTool = 0.12;
 
 const model::Container& container_of(const model::Scenario& scenario) {
@@ -143,16 +143,16 @@ class Camera final : public DepthPerception {
   camera::CameraDraw draw_;
 };
 
-/// What the tool, and the arm over it, may show of themselves.
-class ToolShadow {
+/// Leaves the tool, and the wrist over it, out of what a frame tells.
+class ToolFilter {
  public:
-  explicit ToolShadow(const model::Scenario& scenario) {
+  explicit ToolFilter(const model::Scenario& scenario) {
     if (!scenario.tool) return;
     shapes_ = scenario.tool->rod_shapes;
     shapes_.insert(shapes_.end(), scenario.tool->cup_shapes.begin(), scenario.tool->cup_shapes.end());
   }
 
-  /// Columns beside the tool that are higher than its lower end tell nothing of the container.
+  /// Columns within kAroundTool of the tool, and not farther than that under it, tell nothing of the container.
   void leave_out(const Pose& X_WE, Observation& look) const {
     if (shapes_.empty() || !look.obstacles || !look.heights) return;
     Vector3 low = X_WE.p, high = X_WE.p;
@@ -201,7 +201,7 @@ class Frames final : public DepthPerception {
   [[nodiscard]] bool looks_for(const Pose& X_WP) const override { return is_about_container(X_WP); }
 
   camera::FrameSource source_;
-  ToolShadow tool_;
+  ToolFilter tool_;
 };
 
 }  // namespace

@@ -31,7 +31,7 @@ namespace {
 
 constexpr std::size_t kLongestWord = 200;      // bytes
 constexpr std::chrono::seconds kPatience(10);  // for a process that was interrupted
-constexpr int kLessUrgent = 5;                 // more nice than the server and the browser
+constexpr int kLessUrgent = 5;                 // nicer than the server
 constexpr std::array<const char*, 12> kEndings = {".txt",      ".jsonl", ".h5",  ".program.csv", ".html",     ".live",
                                                   ".operator", ".png",   ".glb", ".script",      ".ros.yaml", ".mcap"};
 
@@ -74,6 +74,9 @@ void drop_live(const Folder& folder, const std::string& name) {
   if (has_file(folder, name + ".h5", status) && has_file(folder, name + ".live", status))
     ::unlinkat(folder.descriptor(), (name + ".live").c_str(), 0);
 }
+
+/// A cell that another process serves, or a robot, sets the pace.
+bool drives_robot(const std::vector<std::string>& words) { return std::ranges::find(words, "--plant") != words.end(); }
 
 /// The last line that begins with "snug: ", without that.
 std::string find_message(const std::string& text) {
@@ -346,7 +349,8 @@ int Runs::run(const std::vector<std::string>& words, int output, const std::stri
     failed = is_ending_ ? ECANCELED
                         : ::posix_spawn(&process, program_.c_str(), &actions, &attributes, pointers.data(), environ);
     // The page that shows a run comes first: a run takes all cores while it plans. Threads inherit this.
-    if (failed == 0) (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(process), kLessUrgent);
+    if (failed == 0 && !drives_robot(words))
+      (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(process), ::getpriority(PRIO_PROCESS, 0) + kLessUrgent);
     if (failed == 0 && !name.empty()) {
       processes_[name] = process;
       if (interrupts_.contains(name)) ::kill(process, SIGINT);

@@ -25,7 +25,7 @@ struct OwnValues {
   double clock_rate = 0.0;  ///< by how much the recording's clock is fast, relative
   Pose bias;                ///< of the simulation's world in the recorded one
   std::vector<Pose> X_BM;   ///< of each tracked body: the frame that was recorded
-  Eigen::VectorXd path;     ///< how much of each draw of the driven bodies' paths is in them; see moved_towards
+  Eigen::VectorXd path;     ///< shares of the modes of the driven bodies' paths
 };
 /// Standard deviations expected of velocity (3), angular velocity (3), delay, clock rate, bias: position (3), rotation
 /// vector (3), then of each tracked body's frame the same; as far as they are fitted; of the driven bodies' paths last.

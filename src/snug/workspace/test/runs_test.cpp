@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <stdlib.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
@@ -36,6 +37,7 @@ case "$sequence" in
   recorded) echo x > a.live; echo x > a.h5;;
   wrong) rm "$log"; echo "snug: wrong words"; exit 2;;
   waits) trap 'echo "snug: interrupted"; echo "{\"event\":\"session ended\",\"time\":1.0,\"failure\":\"none\",\"text\":\"\"}" >> "$log"; exit 1' INT; while true; do sleep 0.02; done;;
+  nice) sleep 0.1; echo "nice $(nice)";;
   deaf) trap '' INT; while true; do sleep 0.02; done;;
 esac
 echo '{"event":"session ended","time":1.0,"failure":"none","text":""}' >> "$log"
@@ -91,6 +93,23 @@ TEST_F(RunsTest, StartTheCommandThatIsShownInTheFolder) {
   runs.remove("a");
   EXPECT_THROW((void)runs.status("a"), InputError);
   EXPECT_EQ(folder_->list().size(), 1U);
+}
+
+TEST_F(RunsTest, LeaveTheProcessorToThePageUnlessTheyDriveARobot) {
+  Runs runs(*folder_, program_, 1);
+  runs.start(request("a", "nice"));
+  RunRequest served = request("b", "nice");
+  served.plant = "click://127.0.0.1:5555";
+  runs.start(served);
+  ASSERT_TRUE(reaches(runs, "a", RunState::Done));
+  ASSERT_TRUE(reaches(runs, "b", RunState::Done));
+  const int own = ::getpriority(PRIO_PROCESS, 0);
+  const auto says = [&](const std::string& name, int nice) {
+    return read_file(cells_ / (name + ".txt"), "what it printed").find("nice " + std::to_string(nice) + "\n") !=
+           std::string::npos;
+  };
+  EXPECT_TRUE(says("a", std::min(19, own + 5)));
+  EXPECT_TRUE(says("b", own));
 }
 
 TEST_F(RunsTest, WaitForTheirTurnAndStopWhenTold) {
