@@ -351,4 +351,24 @@ std::string SceneSearch::search_squares(double rescue) {
   return message;
 }
 
+Eigen::MatrixXd SceneSearch::clock_covariance(const Fitted& at, const numerics::BatchedDerivatives& found) const {
+  const auto n = static_cast<Eigen::Index>(free_.size());
+  const double rate = experiment_.task().clock_rate;
+  if (rate == 0.0 || experiment_.task().program) return Eigen::MatrixXd::Zero(n, n);
+  std::vector<SceneExperiment::Job> jobs;
+  for (const double of_job : {0.0, rate})
+    for (std::size_t i = 0; i < fitted_.size(); ++i) jobs.push_back({0, fitted_[i], at.own[i], of_job});
+  std::vector<MotionError> errors = experiment_.evaluate(std::vector<Eigen::VectorXd>{full(at.x)}, jobs);
+  std::vector<Eigen::VectorXd> changes;
+  for (std::size_t i = 0; i < fitted_.size(); ++i) {
+    Eigen::VectorXd &exact = errors[i].residuals, &fast = errors[fitted_.size() + i].residuals;
+    if (exact.size() != fast.size()) return Eigen::MatrixXd::Zero(n, n);
+    fast -= exact;
+    weigh(experiment_, fitted_[i], at.rows[i], at.weights[i], fast);
+    changes.push_back(std::move(fast));
+  }
+  const Eigen::VectorXd step = numerics::shared_step(found, changes, n);
+  return step * step.transpose();
+}
+
 }  // namespace snug::identification::internal
