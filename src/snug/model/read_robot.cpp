@@ -126,15 +126,19 @@ RobotIo read_io(const Value& value) {
 }  // namespace
 
 void ScenarioReader::read_robot(const Value& value) {
-  const MapReader map =
-      value.map("robot", keys_with<RobotParams>({"name", "urdf", "tool_frame", "flange_frame", "sensor_frame", "pose",
-                                                 "posture", "joints_start", "self_collision", "sensor", "io"}));
+  const MapReader map = value.map(
+      "robot", keys_with<RobotParams>({"name", "urdf", "tool_frame", "tool_pose", "flange_frame", "sensor_frame",
+                                       "pose", "posture", "joints_start", "self_collision", "sensor", "io"}));
   RobotParams robot;
   const Value urdf = map.require("urdf");
-  robot.urdf = urdf.name();
+  robot.urdf = urdf.file();
   robot.name = std::filesystem::path(robot.urdf).stem().string();
   if (const auto name = map.find("name")) robot.name = name->name();
   if (const auto frame = map.find("tool_frame")) robot.tool_frame = frame->name();
+  if (const auto pose = map.find("tool_pose")) {
+    robot.X_LE = read_local_pose(pose);
+    robot.flange_frame = robot.sensor_frame = robot.tool_frame;
+  }
   if (const auto frame = map.find("flange_frame")) robot.flange_frame = frame->name();
   if (const auto frame = map.find("sensor_frame")) robot.sensor_frame = frame->name();
   robot.X_WB = read_world_pose(map.find("pose"));

@@ -90,6 +90,7 @@ struct RobotParams {
   std::string tool_frame = "E";
   std::string flange_frame = "flange";
   std::string sensor_frame = "ft_sensor";
+  std::optional<Pose> X_LE;              ///< E in the link `tool_frame`, of a URDF without gripper; else the link is E
   Pose X_WB;                             ///< root link of the URDF in W
   std::vector<double> posture;           ///< rad (m): target of the posture task, and nearest to it the start is chosen
   std::vector<double> joints_start;      ///< rad (m); empty: the inverse of controller.start_pose nearest to posture

@@ -18,6 +18,7 @@ constexpr double kLargestNumber = 1e12;
 constexpr double kSmallestMass = 1e-6;
 constexpr double kLargestMass = 1e5;
 constexpr std::size_t kLongestName = 120;
+constexpr std::size_t kLongestPath = 4096;
 
 std::string_view range_text(Range range) {
   switch (range) {
@@ -141,6 +142,14 @@ std::string Value::name() const {
   if (!node_.IsScalar()) fail(expected);
   const std::string& text = node_.Scalar();
   if (text.empty() || text.size() > kLongestName || !is_printable(text)) fail(expected);
+  return text;
+}
+
+std::string Value::file() const {
+  const char* expected = "the path of a file: 1 to 4096 printable characters";
+  if (!node_.IsScalar()) fail(expected);
+  const std::string& text = node_.Scalar();
+  if (text.empty() || text.size() > kLongestPath || !is_printable(text)) fail(expected);
   return text;
 }
 

@@ -1,7 +1,10 @@
 // load_arm: the arm that a scenario names, checked against what the scenario says about it.
 #include "snug/robot/load_arm.hpp"
 
+#include <utility>
+
 #include "snug/core/input_error.hpp"
+#include "snug/robot/internal/inertia.hpp"
 
 namespace snug::robot {
 namespace {
@@ -38,6 +41,30 @@ class ScenarioChecks {
   std::vector<std::string> names_;
 };
 
+constexpr const char* kMountedTool = "E";
+
+/// The gripper that the file does not have: a link E on the link that is the tool frame, of the mass of the scenario's
+/// tool, evenly along the way there. What it consists of is drawn and touched as the scenario's tool.
+void mount_tool(const model::Scenario& scenario, const Pose& X_LE, ArmModel& arm) {
+  if (find_link(arm, kMountedTool) >= 0)
+    throw InputError(scenario.source_name, "robot.tool_pose", "a pose of E, though there is a link 'E'",
+                     "no 'tool_pose': " + scenario.robot->urdf + " has a gripper");
+  Link tool;
+  tool.name = kMountedTool;
+  tool.parent = arm.tool_link;
+  tool.segment = arm.joint_count();
+  tool.X_SL = arm.X_SE * X_LE;
+  if (scenario.tool) {
+    const Vector3 p_EL = X_LE.inverse().p;
+    const Matrix3 rod = p_EL.squaredNorm() * Matrix3::Identity() - p_EL * p_EL.transpose();
+    tool.inertia = {scenario.tool->mass, 0.5 * p_EL, scenario.tool->mass / 12.0 * rod};
+    internal::add_inertia(tool.inertia, tool.X_SL, arm.segments.back());
+  }
+  arm.tool_link = static_cast<int>(arm.links.size());
+  arm.X_SE = tool.X_SL;
+  arm.links.push_back(std::move(tool));
+}
+
 }  // namespace
 
 ArmModel load_arm(const model::Scenario& scenario) {
@@ -47,6 +74,7 @@ ArmModel load_arm(const model::Scenario& scenario) {
   const model::RobotParams& robot = *scenario.robot;
   ArmModel arm = load_urdf(urdf_path(scenario), robot.tool_frame);
   arm.X_WB = robot.X_WB;
+  if (robot.X_LE) mount_tool(scenario, *robot.X_LE, arm);
   const ScenarioChecks checks(scenario, arm);
   checks.check_link("flange_frame", robot.flange_frame);
   checks.check_link("sensor_frame", robot.sensor_frame);

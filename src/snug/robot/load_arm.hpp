@@ -11,7 +11,8 @@
 namespace snug::robot {
 
 /// Loads scenario.robot's URDF (relative to the scenario file) and checks what the scenario says about it: frames and
-/// links by name, one number in posture for each joint, within the limits. InputError otherwise, and without a robot.
+/// links by name, one number in posture for each joint, within the limits. With `tool_pose` the arm has a link E more,
+/// with the mass of the scenario's tool. InputError otherwise, and without a robot.
 [[nodiscard]] ArmModel load_arm(const model::Scenario& scenario);
 
 /// Where the URDF of scenario.robot is; there must be a robot.

@@ -14,6 +14,7 @@
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/core/text.hpp"
+#include "snug/geometry/bounds.hpp"
 #include "snug/model/scenario.hpp"
 #include "snug/robot/arm.hpp"
 #include "snug/workspace/folder.hpp"
@@ -127,8 +128,34 @@ std::string link_or(const robot::ArmModel& arm, const char* name, const std::str
   return robot::find_link(arm, name) >= 0 ? name : otherwise;
 }
 
-/// Elbow up and the tool down where an arm of six joints can stand so, else the middle of each joint.
-std::vector<double> choose_posture(const robot::ArmModel& arm) {
+std::string quoted(const std::string& word) {
+  std::string text = "\"";
+  for (const char c : word) {
+    if (c == '"' || c == '\\') text += '\\';
+    text += c;
+  }
+  return text + "\"";
+}
+
+/// m, from where a gripper is mounted to E: how far its rod goes back.
+double length_of(const model::ToolParams& tool) {
+  double lowest = 0.0;
+  for (const model::PlacedShape& rod : tool.rod_shapes)
+    lowest = std::min(lowest, geometry::bounds(rod.shape, rod.X_BG).lower.z());
+  return -lowest;
+}
+
+/// That of the robot before, where the arm can stand so; else elbow up and the tool down where an arm of six joints
+/// can, else the middle of each joint.
+std::vector<double> choose_posture(const robot::ArmModel& arm, const model::Scenario& scenario) {
+  if (scenario.robot && scenario.robot->posture.size() == arm.joints.size()) {
+    bool can_stay = true;
+    for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+      const double value = scenario.robot->posture[i];
+      can_stay = can_stay && arm.joints[i].lower <= value && value <= arm.joints[i].upper;
+    }
+    if (can_stay) return scenario.robot->posture;
+  }
   constexpr double kQuarter = 0.5 * std::numbers::pi;
   const std::array<double, 6> upright = {0.0, -kQuarter, kQuarter, -kQuarter, -kQuarter, 0.0};
   std::vector<double> posture;
@@ -225,39 +252,29 @@ std::string replace_block(const std::string& text, const std::string& name, cons
 }
 
 std::string put_arm(const std::string& text, const std::string& name, const std::string& urdf, const std::string& tool,
-                    const std::filesystem::path& folder) {
-  if (kind_of_name(urdf) != FileKind::Urdf) throw InputError("request", "urdf", urdf, "a file that ends in .urdf");
-  const std::string source = read_file(folder / urdf, "a URDF of the folder", kLargestUpload);
-  const robot::ArmModel arm = robot::parse_urdf(source, urdf, tool, folder);
+                    const std::filesystem::path& file) {
+  const std::string source = read_file(file, "a URDF", kLargestUpload);
+  const std::string link = tool.empty() ? read_arm_facts(source, file.string()).links.front() : tool;
+  const robot::ArmModel arm = robot::parse_urdf(source, file.string(), link, file.parent_path());
   const model::Scenario scenario = model::parse_scenario(text, name);
-  std::vector<double> posture = choose_posture(arm);
-  if (scenario.robot && scenario.robot->posture.size() == arm.joints.size()) {
-    bool can_stay = true;
-    for (std::size_t i = 0; i < arm.joints.size(); ++i) {
-      const double value = scenario.robot->posture[i];
-      can_stay = can_stay && arm.joints[i].lower <= value && value <= arm.joints[i].upper;
-    }
-    if (can_stay) posture = scenario.robot->posture;
-  }
   std::string pose = "  pose: {position: [0.0, 0.0, 0.0], yaw_deg: 0.0}\n";
   const std::string before = find_block(text, "robot");
   const std::size_t at = before.find("\n  pose: {");
   const std::size_t end = at == std::string::npos ? at : before.find('\n', at + 1);
   if (end != std::string::npos && before.find('}', at) < end) pose = before.substr(at + 1, end - at);
-  const auto word = [](const std::string& link) {
-    std::string quoted = "\"";
-    for (const char c : link) {
-      if (c == '"' || c == '\\') quoted += '\\';
-      quoted += c;
-    }
-    return quoted + "\"";
-  };
-  const std::string flange = link_or(arm, "flange", link_or(arm, "tool0", tool));
-  const std::string sensor = link_or(arm, "ft_sensor", tool);
+  std::string frames = fmt::format("  tool_frame: {}\n", quoted(link));
+  const double length = scenario.tool ? length_of(*scenario.tool) : 0.0;
+  if (link == "E" || length <= 0.0) {
+    frames += fmt::format("  flange_frame: {}\n  sensor_frame: {}\n",
+                          quoted(link_or(arm, "flange", link_or(arm, "tool0", link))),
+                          quoted(link_or(arm, "ft_sensor", link)));
+  } else {
+    frames += fmt::format("  tool_pose: {{position: [0.0, 0.0, {:.3f}]}}\n", length);
+  }
+  const std::vector<double> posture = choose_posture(arm, scenario);
   return replace_block(
       text, name, "robot",
-      fmt::format("robot:\n  urdf: {}\n{}  posture: [{}]\n  tool_frame: {}\n  flange_frame: {}\n  sensor_frame: {}\n",
-                  urdf, pose, fmt::join(posture, ", "), word(tool), word(flange), word(sensor)));
+      fmt::format("robot:\n  urdf: {}\n{}  posture: [{}]\n{}", quoted(urdf), pose, fmt::join(posture, ", "), frames));
 }
 
 }  // namespace snug::workspace

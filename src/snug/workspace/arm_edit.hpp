@@ -25,11 +25,13 @@ struct ArmFacts {
 [[nodiscard]] std::string take_in_urdf(const std::string& text, const std::string& name,
                                        const std::function<bool(const std::string&)>& has);
 
-/// The cell's text with the arm of `urdf`, a file in `folder`, its tool carried by `tool`. The arm stands where the one
-/// before stood, else on the bench of W; its posture is kept where it has as many joints, else the middle of the
-/// joints. Throws InputError where the arm cannot be loaded, or the text cannot take it.
+/// The cell's text with the arm of `file`, which the text calls `urdf`, its tool carried by the link `tool`; empty: the
+/// first of ArmFacts::links. Unless that link is E, the scenario's gripper is mounted on it, as long as it is
+/// (`tool_pose`). The arm stands where the one before stood, else on the bench of W; its posture is kept where it has
+/// as many joints, else the middle of the joints. Throws InputError where the arm cannot be loaded, or the text cannot
+/// take it.
 [[nodiscard]] std::string put_arm(const std::string& text, const std::string& name, const std::string& urdf,
-                                  const std::string& tool, const std::filesystem::path& folder);
+                                  const std::string& tool, const std::filesystem::path& file);
 
 /// A block of the top level of YAML, its key and what is indented below, replaced by `block`; at the end where there is
 /// none. Throws InputError where the text is no block mapping.

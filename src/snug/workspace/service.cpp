@@ -448,7 +448,7 @@ ApiAnswer Service::answer_edit(const std::string& what, const std::string& name,
   const std::string tool = member(json, "tool", facts.links.front());
   const std::string path = (folder_.path() / name).string();  // with its folder: other files are looked for beside it
   return as_answer(
-      {{"text", put_arm(text, path, wanted, tool, folder_.path())}, {"links", facts.links}, {"tool", tool}});
+      {{"text", put_arm(text, path, wanted, tool, folder_.path() / wanted)}, {"links", facts.links}, {"tool", tool}});
 }
 
 ApiAnswer Service::answer_run(const ApiRequest& request, const std::string& name, const std::string& part) {

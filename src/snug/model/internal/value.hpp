@@ -60,6 +60,8 @@ class Value {
   [[nodiscard]] bool boolean() const;
   /// Non-empty, at most 120 printable characters.
   [[nodiscard]] std::string name() const;
+  /// Of a file, as it is written.
+  [[nodiscard]] std::string file() const;
   /// A name, or "".
   [[nodiscard]] std::string name_or_empty() const { return is_scalar() && node_.Scalar().empty() ? "" : name(); }
   /// One of the given words; the index of the one that stands here.

@@ -360,5 +360,54 @@ TEST(LoadArm, RefusesWhatTheScenarioSaysOfLinksThatAreNotThere) {
   EXPECT_THROW((void)load_arm(scenario), InputError);
 }
 
+TEST(Urdf, AToolPoseStandsForALinkOfTheFile) {
+  // The same gripper, once as a link of the file and once as a pose: an arm that moves and weighs the same.
+  const std::string text = R"(<robot name="a"><link name="base"/>
+<link name="arm"><inertial><mass value="3"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial></link><link name="tool0"/>%s
+<joint name="j" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 1 0"/>
+<limit lower="-3" upper="3" effort="9" velocity="2"/></joint>
+<joint name="f" type="fixed"><parent link="arm"/><child link="tool0"/><origin xyz="0.4 0 0.1" rpy="0 1.5 0"/></joint>
+</robot>)";
+  const double mass = 1.2, length = 0.25;
+  const std::string inertia = std::to_string(mass * length * length / 12.0);
+  const std::string link = R"(<link name="E"><inertial><origin xyz="0 0 -0.125"/><mass value="1.2"/><inertia ixx=")" +
+                           inertia + R"(" iyy=")" + inertia + R"(" izz="0"/></inertial></link>
+<joint name="g" type="fixed"><parent link="tool0"/><child link="E"/><origin xyz="0 0 0.25"/></joint>)";
+  const auto with = [&](const std::string& words) {
+    std::string whole = text;
+    return whole.replace(whole.find("%s"), 2, words);
+  };
+  const snug::test::ScratchFolder folder;
+  const auto write_arm = [&](const std::string& words) { std::ofstream(folder.path() / "bare.urdf") << with(words); };
+  write_arm("");
+  model::Scenario scenario = test::demonstrator();
+  scenario.source_name = (folder.path() / "cell.yaml").string();
+  scenario.robot.emplace();
+  scenario.robot->urdf = "bare.urdf";
+  scenario.robot->tool_frame = scenario.robot->flange_frame = scenario.robot->sensor_frame = "tool0";
+  scenario.robot->X_LE = Pose{Matrix3::Identity(), {0.0, 0.0, length}};
+  scenario.robot->posture = {0.0};
+  scenario.tool->mass = mass;
+  const ArmModel mounted = load_arm(scenario), whole = parse_urdf(with(link), "whole.urdf", "E");
+
+  EXPECT_LT((mounted.X_SE.p - whole.X_SE.p).norm(), 1e-15);
+  EXPECT_LT((mounted.X_SE.R - whole.X_SE.R).norm(), 1e-15);
+  EXPECT_EQ(mounted.links[static_cast<std::size_t>(mounted.tool_link)].name, "E");
+  EXPECT_NEAR(mounted.segments.back().mass, whole.segments.back().mass, 1e-12);
+  EXPECT_LT((mounted.segments.back().com - whole.segments.back().com).norm(), 1e-12);
+  EXPECT_LT((mounted.segments.back().inertia - whole.segments.back().inertia).norm(), 1e-6);  // text of six decimals
+  const SpatialInertia load = distal_inertia(mounted, find_link(mounted, "tool0"));
+  EXPECT_NEAR(load.mass, mass, 1e-12);
+  EXPECT_NEAR(load.com.z(), 0.5 * length, 1e-12);
+
+  write_arm(link);
+  try {
+    (void)load_arm(scenario);
+    ADD_FAILURE() << "two grippers";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("robot.tool_pose"), std::string::npos) << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace snug::robot
