@@ -16,6 +16,7 @@ void add_verbs(CLI::App& app, Action& action) {
   add_study(app, action);
   add_program(app, action);
   add_check(app, action);
+  add_cell(app, action);
   add_run(app, action);
   add_serve(app, action);
   add_control(app, action);

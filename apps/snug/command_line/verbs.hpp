@@ -13,6 +13,7 @@ void add_compare(CLI::App& app, Action& action);
 void add_study(CLI::App& app, Action& action);
 void add_program(CLI::App& app, Action& action);
 void add_check(CLI::App& app, Action& action);
+void add_cell(CLI::App& app, Action& action);
 void add_run(CLI::App& app, Action& action);
 void add_serve(CLI::App& app, Action& action);
 void add_control(CLI::App& app, Action& action);

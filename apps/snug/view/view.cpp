@@ -17,6 +17,7 @@
 #include "apps/snug/command_line/stop_signal.hpp"
 #include "apps/snug/command_line/viewer_page.hpp"
 #include "apps/snug/common/recordings.hpp"
+#include "snug/core/input_error.hpp"
 #include "snug/runs/result_json.hpp"
 #include "snug/runs/run_table.hpp"
 

@@ -50,10 +50,10 @@ std::optional<std::pair<YAML::Node, YAML::Node>> find_member(const YAML::Node& m
   return std::nullopt;
 }
 
-/// Equal, but for what stands under `pose` of the mapping that `steps` lead to, from `depth` on. Aliases are compared
+/// Equal, but for what stands under `key` of the mapping that `steps` lead to, from `depth` on. Aliases are compared
 /// as what they stand for.
 bool is_same_elsewhere(const YAML::Node& a, const YAML::Node& b, const std::vector<std::string>* steps,
-                       std::size_t depth) {
+                       const std::string& changed, std::size_t depth) {
   if (a.Type() != b.Type()) return false;
   if (a.IsScalar()) return a.Scalar() == b.Scalar() && a.Tag() == b.Tag();
   const bool is_part = steps != nullptr && depth == steps->size();
@@ -63,17 +63,17 @@ bool is_same_elsewhere(const YAML::Node& a, const YAML::Node& b, const std::vect
   if (a.IsSequence()) {
     if (a.size() != b.size()) return false;
     for (std::size_t i = 0; i < a.size(); ++i)
-      if (!is_same_elsewhere(a[i], b[i], below(std::to_string(i)), depth + 1)) return false;
+      if (!is_same_elsewhere(a[i], b[i], below(std::to_string(i)), changed, depth + 1)) return false;
     return true;
   }
   if (!a.IsMap()) return true;
-  std::size_t count = b.size() - (is_part && find_member(b, "pose") ? 1 : 0);
+  std::size_t count = b.size() - (is_part && find_member(b, changed) ? 1 : 0);
   for (const auto& entry : a) {
     if (!entry.first.IsScalar()) return false;
     const std::string& key = entry.first.Scalar();
-    if (is_part && key == "pose") continue;
+    if (is_part && key == changed) continue;
     const auto other = find_member(b, key);
-    if (!other || !is_same_elsewhere(entry.second, other->second, below(key), depth + 1)) return false;
+    if (!other || !is_same_elsewhere(entry.second, other->second, below(key), changed, depth + 1)) return false;
     --count;
   }
   return count == 0;
@@ -83,12 +83,17 @@ bool is_same_elsewhere(const YAML::Node& a, const YAML::Node& b, const std::vect
 class PartText {
  public:
   PartText(std::string text, const std::string& where, const std::string& key)
-      : text_(std::move(text)), where_(where), key_(key), root_(YAML::Load(text_)), part_(find_part()) {}
+      : text_(std::move(text)),
+        where_(where),
+        key_(key),
+        pose_(key == kStartKey ? "start_pose" : "pose"),
+        root_(YAML::Load(text_)),
+        part_(find_part()) {}
 
   [[nodiscard]] std::string moved(const Pose& X_FP, double turn) {
-    const auto pose = find_member(part_, "pose");
+    const auto pose = find_member(part_, pose_);
     if (!pose) {
-      put_key(part_, "pose", "{" + written(X_FP.p, turn) + "}");
+      put_key(part_, pose_, "{" + written(X_FP.p, turn) + "}");
     } else {
       change(pose->second, X_FP, turn);
     }
@@ -96,7 +101,7 @@ class PartText {
     std::string changed = text_;
     for (const Replacement& one : replacements_) changed.replace(one.begin, one.end - one.begin, one.words);
     try {
-      if (is_same_elsewhere(root_, YAML::Load(changed), &steps_, 0)) return changed;
+      if (is_same_elsewhere(root_, YAML::Load(changed), &steps_, pose_, 0)) return changed;
     } catch (const YAML::Exception&) {
       refuse("a pose that is written in another way");
     }
@@ -109,7 +114,7 @@ class PartText {
     steps_ = {key_.substr(0, dot)};
     const auto top = find_member(root_, steps_.front());
     if (!top) refuse("no such key");
-    if (dot == std::string::npos) {
+    if (dot == std::string::npos || key_ == kStartKey) {
       if (!top->second.IsMap()) refuse("no mapping");
       return top->second;
     }
@@ -190,7 +195,7 @@ class PartText {
 
   [[noreturn]] void refuse(const std::string& got) const { throw InputError(where_, key_, got, kEditablePose); }
 
-  std::string text_, where_, key_;
+  std::string text_, where_, key_, pose_;
   std::vector<std::string> steps_;  ///< to the part
   YAML::Node root_, part_;
   std::vector<Replacement> replacements_;
@@ -207,7 +212,7 @@ Pose find_frame(const Scenario& scenario, const std::string& key) {
     part.reset(part[*index]);
   }
   if (!part || !part.IsMap()) return {};
-  const auto pose = find_member(part, "pose");
+  const auto pose = find_member(part, key == kStartKey ? "start_pose" : "pose");
   const auto frame = pose && pose->second.IsMap() ? find_member(pose->second, "frame") : std::nullopt;
   if (!frame || !frame->second.IsScalar()) return {};
   const auto known = std::ranges::find(scenario.frames, frame->second.Scalar(), &Frame::name);
@@ -232,7 +237,8 @@ std::vector<CellPart> find_parts(const Scenario& scenario) {
 }
 
 std::string move_parts(const Scenario& scenario, std::span<const PoseEdit> edits) {
-  const std::vector<CellPart> parts = find_parts(scenario);
+  std::vector<CellPart> parts = find_parts(scenario);
+  parts.push_back({kStartKey, "start", scenario.controller.X_WE_start});
   std::string text = scenario.source_text;
   for (const PoseEdit& edit : edits) {
     const auto part = std::ranges::find(parts, edit.key, &CellPart::key);
@@ -252,6 +258,22 @@ std::string move_parts(const Scenario& scenario, std::span<const PoseEdit> edits
     text = PartText(std::move(text), scenario.source_name, edit.key).moved(X_FP, up > 0.0 ? turn : -turn);
   }
   return text;
+}
+
+std::string write_posture(const Scenario& scenario, std::span<const double> posture) {
+  const std::string& text = scenario.source_text;
+  const YAML::Node list = YAML::Load(text)["robot"]["posture"];
+  const std::size_t begin = list.Mark().is_null() ? text.size() : static_cast<std::size_t>(list.Mark().pos);
+  const std::size_t end = text.find(']', begin);
+  const bool is_plain = list.IsSequence() && list.size() == posture.size() && end != std::string::npos &&
+                        text[begin] == '[' &&
+                        text.substr(begin, end - begin).find_first_of("#\n&*") == std::string::npos;
+  if (!is_plain)
+    throw InputError(scenario.source_name, "robot.posture", "a list that is written in another way",
+                     "one that is written as [a, b, c]; change it in the text");
+  std::string words = "[";
+  for (const double q : posture) words += (words.size() > 1 ? ", " : "") + decimal(1e-4 * std::round(1e4 * q));
+  return text.substr(0, begin) + words + text.substr(end);
 }
 
 }  // namespace snug::model

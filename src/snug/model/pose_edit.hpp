@@ -19,9 +19,12 @@ struct CellPart {
 /// Robot, containers, aligner and static bodies, in this order.
 [[nodiscard]] std::vector<CellPart> find_parts(const Scenario& scenario);
 
+/// Of the tool's start: `controller.start_pose`, which is moved like a part.
+inline constexpr const char* kStartKey = "controller.start_pose";
+
 /// Where a part stands from now on.
 struct PoseEdit {
-  std::string key;                ///< of a CellPart
+  std::string key;                ///< of a CellPart, or kStartKey
   Vector3 p_W = Vector3::Zero();  ///< m, of its frame's origin
   double yaw = 0.0;               ///< rad, about the vertical (yaw_about_vertical)
   bool operator==(const PoseEdit&) const = default;
@@ -37,5 +40,9 @@ struct PoseEdit {
 /// and would be turned, and for a pose that is an alias or written in another way that cannot be changed without
 /// changing more.
 [[nodiscard]] std::string move_parts(const Scenario& scenario, std::span<const PoseEdit> edits);
+
+/// The scenario's text with another `robot.posture` (rad, m; as many numbers as there are), rounded to 1e-4. Throws
+/// InputError where the list is not written in one line.
+[[nodiscard]] std::string write_posture(const Scenario& scenario, std::span<const double> posture);
 
 }  // namespace snug::model

@@ -34,7 +34,9 @@ figure { margin: .6rem 0; max-width: 100%; } figcaption { font-size: 13px; font-
 figure > img { width: 100%; background: #fff; } svg { max-width: 100%; height: auto; }
 svg text { font-size: 11px; fill: var(--ink-soft); } .rule { stroke: var(--line); } .dot { fill: var(--accent); fill-opacity: .65; }
 .interval { stroke: var(--accent); stroke-width: 2; } .mean { stroke: var(--mean); stroke-width: 3; }
-.floor { fill: var(--paper-soft); stroke: var(--ink-soft); }
+.floor { fill: var(--paper-soft); stroke: var(--ink-soft); } .thing { fill: var(--line); stroke: var(--ink-soft); }
+.robot { fill: var(--accent); fill-opacity: .25; stroke: var(--accent); } .reach { fill: none; stroke: var(--accent); stroke-dasharray: 4 4; }
+.unreached { fill: var(--bad); } .bar { stroke: var(--ink-soft); stroke-width: 2; }
 .packed { stroke: var(--ink); stroke-width: 1; fill: hsl(32 55% calc(var(--box-light) + var(--height) * var(--box-span))); }
 @media (max-width: 500px) { body { padding: .6rem .6rem 2rem; font-size: 14px; } th, td { padding: .2rem .45rem; } .card { width: 100%; } .card svg { width: 100%; } }
 @media print {

@@ -10,7 +10,6 @@
 #include <numbers>
 #include <optional>
 
-#include "snug/cell/aligner_feed.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/cup/pick_length.hpp"
@@ -18,11 +17,13 @@
 #include "snug/robot/inverse.hpp"
 #include "snug/robot/load_arm.hpp"
 #include "snug/runs/internal/pose_check.hpp"
+#include "snug/runs/internal/reach_points.hpp"
 
 namespace snug::runs {
 namespace {
 
 using internal::PoseMargin;
+using internal::StandingItem;
 
 constexpr int kMostAcross = 24;          ///< points along the longer edge
 constexpr int kMostAcrossSearched = 10;  ///< where each takes a search
@@ -42,28 +43,6 @@ ReachVerdict verdict_of(CheckKind kind) {
   }
 }
 
-/// The item as it stands at the aligner, and its height there.
-struct StandingItem {
-  std::string name;
-  Vector3 top;  ///< m, in W: middle of the upper face
-  double height = 0.0;
-};
-
-std::vector<StandingItem> find_items(const model::Scenario& scenario) {
-  std::vector<StandingItem> items;
-  if (!scenario.aligner) return items;
-  for (const model::Sequence& sequence : scenario.sequences) {
-    for (const model::Item& item : sequence.items) {
-      const model::Parcel* parcel = model::find_parcel(scenario, item.parcel);
-      if (parcel == nullptr) continue;
-      const Pose X_WP = cell::pose_at_aligner(scenario, item, 0);
-      const double height = (X_WP.R.row(2).cwiseAbs() * model::collision_size(scenario, *parcel)).value();
-      items.push_back({item.parcel, X_WP.p + Vector3(0.0, 0.0, 0.5 * height), height});
-    }
-  }
-  return items;
-}
-
 /// Texts that points share, each once.
 class Whats {
  public:
@@ -78,21 +57,6 @@ class Whats {
  private:
   std::vector<std::string> all_{""};
 };
-
-std::vector<ReachLayer> make_layers(const model::Container& container, const std::vector<StandingItem>& items) {
-  double low = 0.1, high = 0.1;
-  if (!items.empty()) {
-    const auto [least, most] = std::ranges::minmax(items, {}, &StandingItem::height);
-    low = least.height;
-    high = most.height;
-  }
-  const double rim = container.inner_size.z();
-  low = std::min(low, rim);
-  return {{"low box on the floor", low, {}},
-          {"half way up", 0.5 * (low + rim), {}},
-          {container.has_walls ? "at the rim" : "highest box", rim, {}},
-          {"carried over the rim", rim + high, {}}};
-}
 
 /// Of the tool: at each point of each layer, then at each place of a pick, which the map gets.
 std::vector<Pose> add_poses(const model::Scenario& scenario, const std::vector<StandingItem>& items, ReachMap& map) {
@@ -225,6 +189,36 @@ PoseReach PoseReachability::look(const Pose& X_WE) const {
   return told;
 }
 
+std::vector<std::vector<double>> PoseReachability::find_stands(const Pose& X_WE) const {
+  std::vector<std::vector<double>> stands;
+  for (const robot::JointVector& q : impl_->within_limits(impl_->inverse.branches(X_WE, impl_->posture))) {
+    PoseReach result = impl_->judge(q);
+    if (result.verdict == ReachVerdict::Reached) stands.push_back(std::move(result.q));
+  }
+  return stands;
+}
+
+PoseReach PoseReachability::follow(const motion::Way& way, const std::vector<double>& q_start) const {
+  constexpr double kStep = 0.05;          // m, and 0.15 rad
+  constexpr double kLargestChange = 0.6;  // rad or m of a joint in one step: more is another branch
+  const double angle = angle_between(way.start().R, way.end().R) + std::abs(way.pan());
+  const double length = (way.end().p - way.start().p).norm();
+  const int steps = std::max(1, static_cast<int>(std::ceil((length + angle / 3.0) / kStep)));
+  robot::JointVector q = robot::joint_vector(q_start);
+  for (int i = 1; i <= steps; ++i) {
+    const auto next = impl_->inverse.refine(way.at(static_cast<double>(i) / steps), q);
+    if (!next) return {ReachVerdict::OutOfReach, "", 0.0, {}};
+    if ((*next - q).cwiseAbs().maxCoeff() > kLargestChange) return {ReachVerdict::Singular, "", 0.0, {}};
+    q = *next;
+    for (int j = 0; j < q.size(); ++j) {
+      const robot::Joint& joint = impl_->arm.joints[static_cast<std::size_t>(j)];
+      const double left = std::min(q[j] - joint.lower, joint.upper - q[j]);
+      if (left < 0.0) return {ReachVerdict::JointLimit, joint.name, left, {}};
+    }
+  }
+  return impl_->judge(q);
+}
+
 const char* name_of(ReachVerdict verdict) {
   switch (verdict) {
     case ReachVerdict::Reached:
@@ -265,8 +259,12 @@ ReachMap make_reach_map(const model::Scenario& scenario, int threads, const Chec
       container->inner_size.head<2>().maxCoeff() / (reach.is_searched() ? kMostAcrossSearched : kMostAcross);
   map.columns = std::max(1, static_cast<int>(std::lround(container->inner_size.x() / spacing)));
   map.rows = std::max(1, static_cast<int>(std::lround(container->inner_size.y() / spacing)));
-  const std::vector<StandingItem> items = find_items(scenario);
-  map.layers = make_layers(*container, items);
+  const std::vector<StandingItem> items = internal::find_items(scenario);
+  const std::array<double, 4> heights = internal::layer_heights(*container, items);
+  map.layers = {{"low box on the floor", heights[0], {}},
+                {"half way up", heights[1], {}},
+                {container->has_walls ? "at the rim" : "highest box", heights[2], {}},
+                {"carried over the rim", heights[3], {}}};
 
   const std::size_t points =
       map.layers.size() * static_cast<std::size_t>(map.rows) * static_cast<std::size_t>(map.columns);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "snug/model/scenario.hpp"
+#include "snug/motion/way.hpp"
 #include "snug/runs/program_check.hpp"
 
 namespace snug::runs {
@@ -44,6 +45,11 @@ class PoseReachability {
 
   /// From any thread.
   [[nodiscard]] PoseReach look(const Pose& X_WE) const;
+  /// Joints of every branch there that passes all tests; those nearest to the posture first.
+  [[nodiscard]] std::vector<std::vector<double>> find_stands(const Pose& X_WE) const;
+  /// From joints `q` at the beginning of a way along it, always to the nearest joints, within their limits. Where it
+  /// ends all tests are passed; what is told otherwise has no joints where the way cannot be followed to its end.
+  [[nodiscard]] PoseReach follow(const motion::Way& way, const std::vector<double>& q) const;
   /// By a search instead of a formula: some hundred times slower.
   [[nodiscard]] bool is_searched() const;
 
