@@ -122,7 +122,9 @@ std::string_view describe(NoReach reason) noexcept {
   return "";
 }
 
-InverseKinematics::InverseKinematics(const ArmModel& arm) : arm_(arm), geometry_(find_ur_geometry(arm)) {}
+InverseKinematics::InverseKinematics(const ArmModel& arm) : arm_(arm), ur_(find_ur_geometry(arm)) {
+  if (!ur_) wrist_ = find_wrist_geometry(arm);
+}
 
 std::optional<JointVector> InverseKinematics::refine(const Pose& X_WE, const JointVector& q_start) const noexcept {
   JointVector q = q_start;
@@ -142,9 +144,11 @@ std::optional<JointVector> InverseKinematics::refine(const Pose& X_WE, const Joi
 }
 
 IkBranches InverseKinematics::branches(const Pose& X_WE, const JointVector& q_near) const noexcept {
-  if (!geometry_) return search(X_WE, q_near, kSearchStarts);
+  if (!has_closed_form()) return search(X_WE, q_near, kSearchStarts);
   IkBranches found;
-  const UrBranches ideal = solve_ur(*geometry_, arm_.X_WB.inverse() * X_WE, q_near(5), kReachSlack);
+  const Pose X_BE = arm_.X_WB.inverse() * X_WE;
+  const ClosedBranches ideal =
+      ur_ ? solve_ur(*ur_, X_BE, q_near(5), kReachSlack) : solve_wrist_arm(*wrist_, X_BE, q_near(5), kReachSlack);
   found.shortfall = ideal.shortfall;
   for (int i = 0; i < ideal.count; ++i) {
     const auto& values = ideal.q[static_cast<std::size_t>(i)];
@@ -200,8 +204,8 @@ IkBranches InverseKinematics::search(const Pose& X_WE, const JointVector& q_near
 Expected<JointVector, NoReach> InverseKinematics::nearest(const Pose& X_WE, const JointVector& q_near) const noexcept {
   IkBranches found = branches(X_WE, q_near);
   // Following a path, the joints before are the best start there is.
-  if (geometry_ && found.count > 0) (void)add_branch(X_WE, q_near, found);
-  if (found.count == 0) return Unexpected<NoReach>(geometry_ ? NoReach::OutOfReach : NoReach::NotConverged);
+  if (has_closed_form() && found.count > 0) (void)add_branch(X_WE, q_near, found);
+  if (found.count == 0) return Unexpected<NoReach>(has_closed_form() ? NoReach::OutOfReach : NoReach::NotConverged);
   std::optional<JointVector> best;
   for (int i = 0; i < found.count; ++i) {
     JointVector q = found.q[static_cast<std::size_t>(i)];

@@ -9,6 +9,7 @@
 #include "snug/core/expected.hpp"
 #include "snug/robot/kinematics.hpp"
 #include "snug/robot/ur_inverse.hpp"
+#include "snug/robot/wrist_inverse.hpp"
 
 namespace snug::robot {
 
@@ -35,14 +36,15 @@ struct IkBranches {
 inline constexpr double kIkTolerance = 1e-10;
 
 /// Knows one arm. An arm is UR-like when it has six turning joints, the second to fourth axis parallel and the others
-/// at right angles to their neighbours, up to the deviations of a calibration (3 degrees, 20 mm): then the ideal arm is
-/// solved in closed form and each branch refined by Newton steps on the exact one. Any other arm is searched by damped
-/// least squares from several starts.
+/// at right angles to their neighbours; most other arms of six joints have a spherical wrist (wrist_inverse.hpp). Both
+/// up to the deviations of a calibration (3 degrees, 20 mm): then the ideal arm is solved in closed form and each
+/// branch refined by Newton steps on the exact one. Any other arm is searched by damped least squares from several
+/// starts.
 class InverseKinematics {
  public:
   explicit InverseKinematics(const ArmModel& arm);
 
-  [[nodiscard]] bool has_closed_form() const noexcept { return geometry_.has_value(); }
+  [[nodiscard]] bool has_closed_form() const noexcept { return ur_.has_value() || wrist_.has_value(); }
   [[nodiscard]] const ArmModel& arm() const noexcept { return arm_; }
 
   /// All branches (at most 8) of an arm with closed form; for any other what a search from several starts finds.
@@ -63,7 +65,8 @@ class InverseKinematics {
   [[nodiscard]] IkBranches search(const Pose& X_WE, const JointVector& q_near, int starts) const noexcept;
 
   ArmModel arm_;
-  std::optional<UrGeometry> geometry_;
+  std::optional<UrGeometry> ur_;
+  std::optional<WristGeometry> wrist_;  ///< of an arm that is not UR-like
 };
 
 }  // namespace snug::robot

@@ -5,49 +5,22 @@
 #include <cmath>
 #include <numbers>
 
+#include "snug/robot/internal/lines.hpp"
 #include "snug/robot/kinematics.hpp"
 
 namespace snug::robot {
 namespace {
 
-/// How far an arm may be from the ideal one, for Newton steps to arrive from its branches.
-constexpr double kLargestTilt = 3.0 * std::numbers::pi / 180.0;  // rad
-constexpr double kLargestShift = 0.020;                          // m
-constexpr double kSmallestLink = 0.02;                           // m
-/// Below this the sine of the fifth joint is rounding, and the wrist singular.
-constexpr double kSingularSine = 1e-9;
-
-/// The line of a joint's axis at q = 0, in the root link.
-struct Line {
-  Vector3 point;
-  Vector3 direction;
-};
-
-/// Point of line a that is nearest to line b (not parallel).
-Vector3 nearest_point(const Line& a, const Line& b) {
-  const Vector3 r = b.point - a.point;
-  const double along = a.direction.dot(b.direction);
-  const double t = (a.direction.dot(r) - along * b.direction.dot(r)) / (1.0 - along * along);
-  return a.point + t * a.direction;
-}
-
-double distance(const Line& a, const Line& b) { return (nearest_point(a, b) - nearest_point(b, a)).norm(); }
-
-bool are_square(const Line& a, const Line& b) {
-  return std::abs(a.direction.dot(b.direction)) < std::sin(kLargestTilt);
-}
-
-bool are_parallel(const Line& a, const Line& b) {
-  return a.direction.cross(b.direction).norm() < std::sin(kLargestTilt);
-}
-
-Matrix3 about(const Vector3& axis, double angle) noexcept { return Eigen::AngleAxisd(angle, axis).toRotationMatrix(); }
-
-double wrapped(double angle) noexcept {
-  const double turn = 2.0 * std::numbers::pi;
-  const double rest = angle - turn * std::round(angle / turn);
-  return rest <= -std::numbers::pi ? rest + turn : rest;
-}
+using internal::about;
+using internal::are_parallel;
+using internal::are_square;
+using internal::distance;
+using internal::kLargestShift;
+using internal::kSingularSine;
+using internal::kSmallestLink;
+using internal::Line;
+using internal::nearest_point;
+using internal::wrapped;
 
 double plane_angle(const Vector3& v) noexcept { return std::atan2(v.z(), v.x()); }
 
@@ -85,7 +58,7 @@ WristBranch solve_wrist(const UrGeometry& arm, const Matrix3& R_1E, const Vector
   return b;
 }
 
-void add_elbows(const UrGeometry& arm, const WristBranch& b, double slack, UrBranches& found) {
+void add_elbows(const UrGeometry& arm, const WristBranch& b, double slack, ClosedBranches& found) {
   const double l1 = arm.upper_arm;
   const double l2 = arm.forearm;
   const double r = std::hypot(b.reach_x, b.reach_z);
@@ -153,8 +126,8 @@ std::optional<UrGeometry> find_ur_geometry(const ArmModel& arm) {
   return g;
 }
 
-UrBranches solve_ur(const UrGeometry& arm, const Pose& X_BE, double q6, double slack) noexcept {
-  UrBranches found;
+ClosedBranches solve_ur(const UrGeometry& arm, const Pose& X_BE, double q6, double slack) noexcept {
+  ClosedBranches found;
   const Pose X_0E = arm.X_B0.inverse() * X_BE;
   const Vector3 p_06 = X_0E * arm.p_E6_E;
   // The wrist lies `offset` off the plane of the arm: p_x sin q1 - p_y cos q1 = offset.

@@ -30,7 +30,7 @@ struct UrGeometry {
 /// Nothing when the arm is not UR-like (inverse.hpp).
 [[nodiscard]] std::optional<UrGeometry> find_ur_geometry(const ArmModel& arm);
 
-struct UrBranches {
+struct ClosedBranches {
   std::array<std::array<double, 6>, 8> q;
   int count = 0;
   double shortfall = 0.0;  ///< m, as in IkBranches
@@ -38,6 +38,6 @@ struct UrBranches {
 
 /// All branches of the ideal arm for a pose of E in the root link. Where the pose is beyond reach by less than `slack`
 /// [m], the nearest stretched or folded arm is given, for the exact arm may reach. `q6` is used where joint 6 is free.
-[[nodiscard]] UrBranches solve_ur(const UrGeometry& arm, const Pose& X_BE, double q6, double slack) noexcept;
+[[nodiscard]] ClosedBranches solve_ur(const UrGeometry& arm, const Pose& X_BE, double q6, double slack) noexcept;
 
 }  // namespace snug::robot

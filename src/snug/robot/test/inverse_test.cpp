@@ -14,23 +14,12 @@ namespace snug::robot {
 namespace {
 
 using test::disturbed;
+using test::miss;
 using test::random_joints;
 using test::shipped_arm;
+using test::turn_distance;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-
-/// Largest difference of joints, full turns left out.
-double turn_distance(const JointVector& a, const JointVector& b) {
-  double worst = 0.0;
-  for (Eigen::Index i = 0; i < a.size(); ++i) worst = std::max(worst, std::abs(std::remainder(a(i) - b(i), kTurn)));
-  return worst;
-}
-
-/// Metres and radians between the tool at q and a pose.
-double miss(const ArmModel& arm, const JointVector& q, const Pose& X_WE) {
-  const Pose at = forward_tool(arm, q);
-  return std::max((at.p - X_WE.p).norm(), angle_between(at.R, X_WE.R));
-}
 
 /// How near the joints are to where two branches meet: sines of elbow and wrist.
 double branch_margin(const JointVector& q) { return std::min(std::abs(std::sin(q(2))), std::abs(std::sin(q(4)))); }
@@ -82,7 +71,7 @@ TEST(Inverse, IsExactInClosedFormOnTheIdealArm) {
     const JointVector q = random_joints(rng, 6, std::numbers::pi);
     if (branch_margin(q) < 0.05) continue;
     const Pose X_WE = forward_tool(arm, q);
-    const UrBranches found = solve_ur(*geometry, arm.X_WB.inverse() * X_WE, 0.0, 0.0);
+    const ClosedBranches found = solve_ur(*geometry, arm.X_WB.inverse() * X_WE, 0.0, 0.0);
     EXPECT_GE(found.count, 2);
     for (int i = 0; i < found.count; ++i)  // rounding, through the elbow's acos near its ends
       EXPECT_LT(miss(arm, Eigen::Map<const Vector6>(found.q[static_cast<std::size_t>(i)].data()), X_WE), 1e-11);
@@ -138,17 +127,17 @@ TEST(Inverse, PrefersFullTurnsNearTheJointsAsked) {
   EXPECT_LT((*found - q).cwiseAbs().maxCoeff(), 1e-8);
 }
 
-/// Six joints with a wrist whose three axes meet: not UR-like.
-ArmModel spherical_wrist_arm() {
+/// Six joints with a wrist whose axes do not meet in one point: neither UR-like nor with a spherical wrist.
+ArmModel offset_wrist_arm() {
   ArmModel arm = shipped_arm();
   arm.joints[3].X_SJ = {exp_rotation(Vector3(0.0, 0.5 * std::numbers::pi, 0.0)), Vector3(-0.1, 0.0, 0.0)};
   arm.joints[4].X_SJ = {exp_rotation(Vector3(0.5 * std::numbers::pi, 0.0, 0.0)), Vector3(0.0, 0.0, -0.5)};
-  arm.joints[5].X_SJ = {exp_rotation(Vector3(-0.5 * std::numbers::pi, 0.0, 0.0)), Vector3::Zero()};
+  arm.joints[5].X_SJ = {exp_rotation(Vector3(-0.5 * std::numbers::pi, 0.0, 0.0)), Vector3(0.08, 0.0, 0.0)};
   return arm;
 }
 
 TEST(Inverse, SearchesAnArmWithoutClosedForm) {
-  const ArmModel arm = spherical_wrist_arm();
+  const ArmModel arm = offset_wrist_arm();
   const InverseKinematics inverse(arm);
   EXPECT_FALSE(inverse.has_closed_form());
   Rng rng = Rng(14).split("search");
@@ -170,7 +159,7 @@ TEST(Inverse, SearchesAnArmWithoutClosedForm) {
 }
 
 TEST(Inverse, DoesNotConvergeToAPoseThatIsNotThere) {
-  const ArmModel arm = spherical_wrist_arm();
+  const ArmModel arm = offset_wrist_arm();
   const auto found = InverseKinematics(arm).nearest(Pose{Matrix3::Identity(), Vector3(5, 0, 0)}, JointVector::Zero(6));
   ASSERT_FALSE(found.has_value());
   EXPECT_EQ(found.error(), NoReach::NotConverged);

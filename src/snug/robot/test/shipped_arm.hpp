@@ -1,7 +1,12 @@
 // The arm of the shipped scenario, and joints at random, for the tests of this module.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include "snug/core/rng.hpp"
+#include "snug/robot/kinematics.hpp"
 #include "snug/robot/load_arm.hpp"
 
 namespace snug::robot::test {
@@ -30,6 +35,20 @@ inline ArmModel disturbed(ArmModel arm, Rng& rng, double metres, double radians)
         joint.X_SJ.R * exp_rotation(radians * Vector3(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1)));
   }
   return arm;
+}
+
+/// Largest difference of joints, full turns left out.
+inline double turn_distance(const JointVector& a, const JointVector& b) {
+  double worst = 0.0;
+  for (Eigen::Index i = 0; i < a.size(); ++i)
+    worst = std::max(worst, std::abs(std::remainder(a(i) - b(i), 2.0 * std::numbers::pi)));
+  return worst;
+}
+
+/// Metres and radians between the tool at q and a pose.
+inline double miss(const ArmModel& arm, const JointVector& q, const Pose& X_WE) {
+  const Pose at = forward_tool(arm, q);
+  return std::max((at.p - X_WE.p).norm(), angle_between(at.R, X_WE.R));
 }
 
 }  // namespace snug::robot::test
