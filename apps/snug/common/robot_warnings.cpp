@@ -12,6 +12,7 @@ void print_robot_warnings(const model::Scenario& scenario) {
   const std::filesystem::path urdf = robot::urdf_path(scenario);
   print_warnings(robot::find_assumptions(urdf, scenario.robot->tool_frame));
   print_warnings(robot::find_unknown_efforts(urdf));
+  print_warnings(robot::find_weak_joints(scenario));
 }
 
 }  // namespace snug::app

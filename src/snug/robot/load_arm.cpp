@@ -1,9 +1,14 @@
 // load_arm: the arm that a scenario names, checked against what the scenario says about it.
 #include "snug/robot/load_arm.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "snug/core/input_error.hpp"
+#include "snug/robot/dynamics.hpp"
 #include "snug/robot/internal/inertia.hpp"
 
 namespace snug::robot {
@@ -65,9 +70,8 @@ void mount_tool(const model::Scenario& scenario, const Pose& X_LE, ArmModel& arm
   arm.links.push_back(std::move(tool));
 }
 
-}  // namespace
-
-ArmModel load_arm(const model::Scenario& scenario) {
+/// The arm with what the scenario says about it, its efforts as the file has them.
+ArmModel load_as_written(const model::Scenario& scenario) {
   if (!scenario.robot)
     throw InputError(scenario.source_name, "robot", "",
                      "a 'robot' in the scenario, to run through the joints of an arm");
@@ -85,6 +89,46 @@ ArmModel load_arm(const model::Scenario& scenario) {
     checks.check_link("self_collision.links", pair.link_b);
   }
   return arm;
+}
+
+/// A joint that cannot hold the arm by what its file says.
+struct WeakJoint {
+  std::size_t joint = 0;
+  double needed = 0.0;  ///< Nm or N, at rest in the posture
+};
+std::vector<WeakJoint> find_weak(const model::Scenario& scenario, const ArmModel& arm) {
+  const JointVector zero = JointVector::Zero(arm.joint_count());
+  const JointVector needed =
+      inverse_dynamics(arm, {joint_vector(scenario.robot->posture), zero, zero}, {}, scenario.gravity);
+  std::vector<WeakJoint> weak;
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    const double torque = std::abs(needed[static_cast<Eigen::Index>(i)]);
+    if (torque > arm.joints[i].max_effort) weak.push_back({i, torque});
+  }
+  return weak;
+}
+
+}  // namespace
+
+ArmModel load_arm(const model::Scenario& scenario) {
+  ArmModel arm = load_as_written(scenario);
+  for (const WeakJoint& weak : find_weak(scenario, arm))
+    arm.joints[weak.joint].max_effort = std::numeric_limits<double>::infinity();
+  return arm;
+}
+
+std::vector<std::string> find_weak_joints(const model::Scenario& scenario) {
+  const ArmModel arm = load_as_written(scenario);
+  std::vector<std::string> found;
+  for (const WeakJoint& weak : find_weak(scenario, arm)) {
+    const Joint& joint = arm.joints[weak.joint];
+    const char* unit = joint.kind == JointKind::Revolute ? "Nm" : "N";
+    found.push_back(
+        fmt::format("{}: joint '{}': effort {:g} {} is taken as unknown: the arm needs {:.0f} {} to hold itself "
+                    "in its posture",
+                    urdf_path(scenario).string(), joint.name, joint.max_effort, unit, weak.needed, unit));
+  }
+  return found;
 }
 
 std::filesystem::path urdf_path(const model::Scenario& scenario) {

@@ -409,5 +409,35 @@ TEST(Urdf, AToolPoseStandsForALinkOfTheFile) {
   }
 }
 
+TEST(Urdf, AnEffortThatCannotHoldTheArmIsTakenAsUnknown) {
+  // 3 kg at 0.4 m, held level: 11.8 Nm by hand.
+  const auto effort_of =
+      [](double effort, std::vector<std::string>& warnings) {
+        const snug::test::ScratchFolder folder;
+        std::ofstream(folder / "arm.urdf")
+            << R"(<robot name="a"><link name="base"/><link name="arm"><inertial><origin xyz="0.4 0 0"/>
+<mass value="3"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial></link>
+<joint name="j" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 1 0"/><limit lower="-3" upper="3" velocity="2"
+effort=")" << effort
+            << R"("/></joint></robot>)";
+        model::Scenario scenario = test::demonstrator();
+        scenario.source_name = (folder / "cell.yaml").string();
+        scenario.robot.emplace();
+        scenario.robot->urdf = "arm.urdf";
+        scenario.robot->tool_frame = scenario.robot->flange_frame = scenario.robot->sensor_frame = "arm";
+        scenario.robot->posture = {0.0};
+        warnings = find_weak_joints(scenario);
+        return load_arm(scenario).joints.front().max_effort;
+      };
+  std::vector<std::string> warnings;
+  EXPECT_EQ(effort_of(11.9, warnings), 11.9);
+  EXPECT_TRUE(warnings.empty());
+  EXPECT_EQ(effort_of(11.7, warnings), std::numeric_limits<double>::infinity());
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings.front().find("joint 'j': effort 11.7 Nm is taken as unknown: the arm needs 12 Nm"),
+            std::string::npos)
+      << warnings.front();
+}
+
 }  // namespace
 }  // namespace snug::robot
