@@ -56,20 +56,21 @@ Markup floor_plan(const FloorPlan& plan) {
   std::string svg, labels;
   for (const PlanOutline& one : plan.outlines) {
     std::string points;
-    Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+    double middle = 0.0, top = scale.height();
     for (const Eigen::Vector2d& p : one.corners) {
       points += fmt::format("{:.1f},{:.1f} ", scale.x(p), scale.y(p));
-      middle += p / static_cast<double>(one.corners.size());
+      middle += scale.x(p) / static_cast<double>(one.corners.size());
+      top = std::min(top, scale.y(p));
     }
     svg += fmt::format("<polygon points=\"{}\" {}><title>{}</title></polygon>\n", points, style_of(one.ink),
                        escape(one.name));
-    if (one.is_labelled) labels += internal::svg_text(scale.x(middle), scale.y(middle) + 4.0, one.name, "middle");
+    if (one.is_labelled) labels += internal::svg_text(middle, top - 4.0, one.name, "middle");
   }
   for (const PlanCircle& one : plan.circles)
     svg += internal::svg_dot(scale.x(one.middle), scale.y(one.middle), scale.per_metre() * one.radius,
                              "class=\"reach\"", one.about);
   for (const PlanDot& one : plan.dots)
-    svg += internal::svg_dot(scale.x(one.at), scale.y(one.at), 3.0, style_of(one.ink), one.about);
+    svg += internal::svg_dot(scale.x(one.at), scale.y(one.at), 2.0, style_of(one.ink), one.about);
   constexpr double kBar = 0.5;  // m
   const double left = kDrawingMargin, bottom = scale.height() - 6.0;
   svg += internal::svg_line(left, bottom, left + kBar * scale.per_metre(), bottom, "class=\"bar\"");

@@ -21,7 +21,7 @@ struct PlanOutline {
   std::string name;                      ///< shown under the mouse
   std::vector<Eigen::Vector2d> corners;  ///< m, in the order of a walk around it
   PlanInk ink = PlanInk::Thing;
-  bool is_labelled = false;  ///< its name stands in it
+  bool is_labelled = false;  ///< its name stands over it
 };
 
 struct PlanDot {

@@ -39,7 +39,9 @@ constexpr double kHalfBase = 0.1;       ///< m, of the foot of a robot
 constexpr double kSpareTurn = 0.35;     ///< rad, of the first joint, for arms whose shoulder is beside its axis
 constexpr std::size_t kLookedAt = 12;   ///< places that are looked at pose by pose,
 constexpr std::size_t kRounds = 5;      ///< and so many times as many as long as none reaches everything
-constexpr double kSamePlace = 0.12;     ///< m: places so near to each other are not both looked at
+constexpr double kRoundLength = 0.01;   ///< m, to which places of the base are rounded,
+constexpr double kRoundAngle = kHalfTurn / 180.0;  ///< rad, and its turn
+constexpr double kSamePlace = 0.12;                ///< m: places so near to each other are not both looked at
 constexpr std::size_t kTold = 5;
 
 struct BasePlace {
@@ -55,6 +57,8 @@ struct Candidate {
   double travel = 0.0;  ///< m
   double cost = 0.0;    ///< m of travel, what height and margin are worth among it
 };
+
+double rounded(double value, double step) { return step * std::round(value / step); }
 
 /// Enough margin first, then the lower cost.
 bool is_better(const Candidate& a, const Candidate& b) {
@@ -205,6 +209,7 @@ class Scale {
       if (0.5 * (high - low) > profile_.half_turn() - kSpareTurn) return false;
       one.base.yaw = std::remainder(around + 0.5 * (low + high) - profile_.middle(), 2.0 * kHalfTurn);
     }
+    one.base.yaw = rounded(one.base.yaw, kRoundAngle);
     return true;
   }
 

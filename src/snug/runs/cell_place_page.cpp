@@ -12,6 +12,7 @@
 #include "snug/report/page.hpp"
 #include "snug/report/table.hpp"
 #include "snug/robot/load_arm.hpp"
+#include "snug/runs/internal/reach_points.hpp"
 #include "snug/runs/reach_map.hpp"
 
 namespace snug::runs {
@@ -54,10 +55,15 @@ report::FloorPlan plan_of(const model::Scenario& scenario, const ReachMap& map, 
   const Eigen::Vector2d foot(0.1, 0.1), base = scenario.robot->X_WB.p.head<2>();
   plan.outlines.push_back({map.robot, outline_in(scenario.robot->X_WB, -foot, foot), report::PlanInk::Robot, true});
   plan.circles.push_back({base, reach, "as far as the tool reaches, pointing down"});
+  double least = half.minCoeff();
+  for (const internal::StandingItem& item : internal::find_items(scenario))
+    least = std::min({least, 0.5 * item.size.x(), 0.5 * item.size.y()});
   const auto is_reached = [](const ReachPoint& point) { return point.verdict == ReachVerdict::Reached; };
   for (int i = 0; i < map.columns * map.rows; ++i) {
     const Vector3 p_T((i % map.columns + 0.5) / map.columns * map.inner_size.x() - half.x(),
                       (i / map.columns + 0.5) / map.rows * map.inner_size.y() - half.y(), 0.0);  // NOLINT: rows
+    // Nearer to the walls no box has its middle.
+    if ((p_T.head<2>().cwiseAbs().array() > half.array() - least).any()) continue;
     std::string missing;
     for (const ReachLayer& layer : map.layers) {
       const ReachPoint& point = layer.points[static_cast<std::size_t>(i)];

@@ -9,6 +9,7 @@
 #include <regex>
 
 #include "snug/core/rng.hpp"
+#include "snug/report/floor_plan.hpp"
 #include "snug/report/plan_view.hpp"
 #include "snug/report/test/sound.hpp"
 
@@ -107,6 +108,24 @@ TEST(PlanView, HigherBoxesAreDrawnLaterAndNamesAreEscaped) {
   expect_well_formed(view.html());
   EXPECT_EQ(count(view.html(), "<polygon"), 2);
   EXPECT_LT(view.html().find("low, top at 100 mm"), view.html().find("&lt;high&gt;, top at 200 mm"));
+}
+
+TEST(Chart, FloorPlanIsToScaleAndEscapesNames) {
+  FloorPlan plan;
+  plan.about = "a cell";
+  plan.outlines.push_back({"<bench>", {{0.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {0.0, 1.0}}, PlanInk::Ground, true});
+  plan.circles.push_back({{1.0, 0.5}, 0.25, "reach"});
+  plan.dots = {{{0.5, 0.5}, PlanInk::Reached, "a"}, {{1.5, 0.5}, PlanInk::Unreached, "b"}};
+  const std::string html = floor_plan(plan).html();
+  expect_well_formed(html);
+  EXPECT_NE(html.find("&lt;bench&gt;"), std::string::npos);
+  const std::vector<double> xs = dots_of(html);
+  ASSERT_EQ(xs.size(), 3U);
+  // The circle stands between the dots, which are as far apart as four radii.
+  EXPECT_NEAR(xs[0], 0.5 * (xs[1] + xs[2]), 0.02);
+  const std::size_t radius = html.find(" r=\"");
+  EXPECT_NEAR(xs[2] - xs[1], 4.0 * std::stod(html.substr(radius + 4)), 0.1);
+  expect_well_formed(floor_plan({}).html());
 }
 
 }  // namespace
