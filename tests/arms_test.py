@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""arms_test.py: robots that turn their tool about the vertical alone pack boxes that hang askew. SNUG names the program."""
+"""arms_test.py: arms of other kinds pack: one that turns its tool about the vertical alone, boxes that hang askew; and those of makers, placed by
+`snug cell place`, ten boxes each. SNUG names the program, SNUG_URDF_FOLDER a folder of public URDF files with their meshes; without it
+arms of makers are skipped, and said so."""
 import json
 import os
 import re
@@ -60,6 +62,45 @@ class Arms(unittest.TestCase):
             result = json.loads(done.stdout)
             self.assertEqual(result["robot"], "gantry")
             self.assertEqual((result["executed_boxes"], result["boxes_lost"]), (1, 0), result["stopped"])
+
+
+# Of eight makers; a file is found by its name, wherever it is in the folder.
+MAKERS = {"UR10e": "universalUR10e.urdf", "UR5": "universalUR5.urdf", "KUKA KR 10 R1420": "kr10r1420.urdf", "ABB IRB 1600": "irb1600_6_12.urdf",
+          "ABB IRB 2600": "irb2600_12_165.urdf", "FANUC LR Mate 200iD": "lrmate200id.urdf", "FANUC M-10iA": "m10ia.urdf",
+          "Yaskawa MH5": "yaskawaMotomanMH5.urdf", "Staubli TX2-90": "tx2_90.urdf", "Doosan M1013": "m1013.white.urdf", "xArm 7": "xarm7.urdf",
+          "Franka FR3": "fr3.urdf"}
+
+
+def ten_boxes():
+    """The shipped cell with three large boxes and seven small ones."""
+    boxes = [("L" if number in (1, 4, 7) else "S", number) for number in range(1, 11)]
+    types = {"L": "large", "S": "small"}
+    text = CELL.read_text()
+    return text[:text.index("parcels:")] + "\n".join(
+        ["parcels:", *(f"  - {{id: {kind}{number}, type: {types[kind]}, material: box}}" for kind, number in boxes),
+         "sequences:", "  - name: first", "    items:", *(f"      - {{parcel: {kind}{number}, up: Z}}" for kind, number in boxes)]) + "\n"
+
+
+class Makers(unittest.TestCase):
+    def test_arms_of_makers_are_placed_and_pack_nine_of_ten_boxes(self):
+        if not os.environ.get("SNUG_URDF_FOLDER"):
+            self.skipTest("SNUG_URDF_FOLDER does not name a folder of public URDF files")
+        files = {path.name: path for path in sorted(Path(os.environ["SNUG_URDF_FOLDER"]).rglob("*.urdf"))}
+        for name, file in MAKERS.items():
+            with self.subTest(arm=name), tempfile.TemporaryDirectory() as folder:
+                if file not in files:
+                    print(f"arms_test.py: {name}: no {file} in SNUG_URDF_FOLDER", flush=True)
+                    continue
+                (Path(folder) / "cell.yaml").write_text(ten_boxes())
+                place = ["cell", "place", "cell.yaml", "--arm", str(files[file]), "-o", "placed.yaml"]
+                pack = ["pack", "placed.yaml", "--sequence", "first", "--samples", "0", "--json"]
+                for words in (place, pack):
+                    done = subprocess.run([SNUG, *words], cwd=folder, text=True, capture_output=True, timeout=1200, check=False)
+                    self.assertEqual(done.returncode, 0, done.stdout[-1000:] + done.stderr[-1000:])
+                result = json.loads(done.stdout)
+                print(f"arms_test.py: {name}: {result['executed_boxes']} of 10 boxes", flush=True)
+                self.assertGreaterEqual(result["executed_boxes"], 9)
+                self.assertEqual(result["boxes_lost"], 0)
 
 
 if __name__ == "__main__":

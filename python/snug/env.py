@@ -16,9 +16,10 @@ import numpy as np
 
 from . import _core, spaces
 from ._env_parts import action_space, check_options, choices, container_size, observation_space
+from ._ray_env import RayVectorPacking
 from ._vector_env import VectorPacking
 
-__all__ = ["Packing", "VectorPacking"]
+__all__ = ["Packing", "RayVectorPacking", "VectorPacking"]
 
 Observation = Dict[str, np.ndarray]
 

@@ -5,9 +5,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -19,8 +21,10 @@
 #include "apps/snug/command_line/verbs.hpp"
 #include "apps/snug/command_line/version.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/python_interpreter.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/study/effects.hpp"
+#include "snug/study/ray.hpp"
 #include "snug/study/run.hpp"
 #include "snug/study/slurm.hpp"
 
@@ -36,6 +40,7 @@ struct StudyOptions {
   std::optional<int> threads;      ///< absent: all cores
   std::optional<std::string> chunks;
   bool slurm = false;
+  std::optional<std::string> ray;  ///< address of a cluster
   bool dry_run = false;
   bool json = false;
   std::optional<std::string> output;
@@ -72,23 +77,36 @@ std::pair<std::uint64_t, std::uint64_t> parse_chunks(const std::string& words, c
   return {first, last};
 }
 
-int submit_array(const StudyOptions& options, const study::Study& study, const study::Folder& folder) {
+std::string this_program() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (error) throw std::runtime_error("where this program is cannot be told: " + error.message());
+  return program.string();
+}
+
+/// By Slurm or Ray: what is missing as a script in the study's folder, then handed over.
+int hand_over(const StudyOptions& options, const study::Study& study, const study::Folder& folder) {
   const study::ArrayPlan plan = study::plan_array(study, folder);
   if (plan.tasks.empty()) {
     std::fprintf(stderr, "every row is done\n");
     return kSuccess;
   }
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (error) throw std::runtime_error("where this program is cannot be told: " + error.message());
-  const fs::path script = folder.path() / "array.sh";
-  write_file(OutputFile(script), study::array_script(study, folder, plan, program.string(), options.file));
+  const fs::path script = folder.path() / (options.ray ? "ray-tasks.py" : "array.sh");
+  write_file(OutputFile(script),
+             options.ray ? study::ray_program(study, folder, plan, this_program(), options.file, *options.ray)
+                         : study::array_script(study, folder, plan, this_program(), options.file));
   if (options.dry_run) {
     print(script.string() + "\n");
     return kSuccess;
   }
-  print(study::submit(script) + "\n");
-  return kSuccess;
+  if (!options.ray) {
+    print(study::submit(script) + "\n");
+    return kSuccess;
+  }
+  const std::string python = python_interpreter();
+  execlp(python.c_str(), python.c_str(), script.c_str(), nullptr);
+  throw InputError("command line", "--ray", "'" + python + "' cannot be started: " + std::strerror(errno),
+                   "a Python 3 with ray, named by SNUG_PYTHON");
 }
 
 std::function<void(std::uint64_t, std::uint64_t)> progress_line() {
@@ -107,8 +125,10 @@ int run_study(const StudyOptions& options) {
   study::RunSettings settings;
   settings.version = version_text();
   if (options.chunks) std::tie(settings.first_chunk, settings.last_chunk) = parse_chunks(*options.chunks, study);
+  if (options.dry_run && !options.slurm && !options.ray)
+    throw InputError("command line", "--dry-run", "without --slurm or --ray", "one of them");
   const study::Folder folder(study, folder_of(options), true);
-  if (options.slurm) return submit_array(options, study, folder);
+  if (options.slurm || options.ray) return hand_over(options, study, folder);
   settings.processes = options.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
   settings.progress = progress_line();
   const auto start = std::chrono::steady_clock::now();
@@ -195,6 +215,7 @@ constexpr const char* kStudyHelp =
 Examples:
   snug study scenarios/examples/friction.yaml           # run what is missing, on all cores
   snug study scenarios/examples/friction.yaml --slurm   # write and submit an array of jobs
+  snug study scenarios/examples/friction.yaml --ray auto   # hand what is missing to a Ray cluster and wait
   snug study status scenarios/examples/friction.yaml
   snug study merge scenarios/examples/friction.yaml -o friction.csv
   snug study report scenarios/examples/friction.yaml -o friction.html)";
@@ -229,7 +250,10 @@ void add_study(CLI::App& app, Action& action) {
   verb.option("--chunks", options.chunks, "A-B", "only these tables, from 0; jobs of an array have theirs");
   const OptionRow slurm =
       verb.flag("--slurm", options.slurm, "write an array of jobs for what is missing and submit it");
-  verb.flag("--dry-run", options.dry_run, "with --slurm: write it, but do not submit it").needs(slurm);
+  verb.option("--ray", options.ray, "ADDRESS",
+              "hand what is missing to a Ray cluster and wait: its address, auto, or local for this machine alone")
+      .excludes(slurm);
+  verb.flag("--dry-run", options.dry_run, "with --slurm or --ray: write the script, but do not run it");
   add_json(verb, options.json);
   const Verb status = verb.part("status", "how much of a study is done", "", true);
   StudyOptions& of_status = status.runs(run_study_status);

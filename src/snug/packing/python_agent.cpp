@@ -20,17 +20,13 @@
 #include <utility>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/python_interpreter.hpp"
 #include "snug/packing/remote_agent.hpp"
 
 namespace snug::packing {
 namespace {
 
 constexpr std::size_t kLongestAnswer = std::size_t{16} << 20U;
-
-std::string interpreter() {
-  if (const char* asked = std::getenv("SNUG_PYTHON"); asked != nullptr && *asked != '\0') return asked;
-  return ::access("/usr/bin/python3", X_OK) == 0 ? "/usr/bin/python3" : "python3";
-}
 
 [[noreturn]] void be_interpreter(char* const* argv, int in, int out, int trouble, pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // one that hangs does not outlive the program, however that ends
@@ -50,7 +46,7 @@ class Interpreter {
  public:
   Interpreter(std::string words, const std::string& script, AgentLimits limits)
       : words_(std::move(words)), limits_(std::move(limits)), patience_(limits_.patience) {
-    const std::string program = interpreter();
+    const std::string program = python_interpreter();
     std::array<int, 2> in{}, out{}, trouble{};
     if (::pipe2(in.data(), O_CLOEXEC) != 0 || ::pipe2(out.data(), O_CLOEXEC) != 0 ||
         ::pipe2(trouble.data(), O_CLOEXEC) != 0)
@@ -127,7 +123,7 @@ class Interpreter {
   }
 
   [[noreturn]] void fail_ended() {
-    throw AgentError(words_ + ": its interpreter '" + interpreter() + "' has ended (see its messages)");
+    throw AgentError(words_ + ": its interpreter '" + python_interpreter() + "' has ended (see its messages)");
   }
 
   /// It is asked to end by the end of its input, then told, then made to.

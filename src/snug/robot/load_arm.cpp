@@ -91,19 +91,25 @@ ArmModel load_as_written(const model::Scenario& scenario) {
   return arm;
 }
 
-/// A joint that cannot hold the arm by what its file says.
+/// A joint that cannot hold the arm by what its file says, or has the number of one that cannot: who wrote it did not
+/// know them.
 struct WeakJoint {
   std::size_t joint = 0;
-  double needed = 0.0;  ///< Nm or N, at rest in the posture
+  std::size_t cannot_hold = 0;  ///< the joint whose number it is
+  double needed = 0.0;          ///< Nm or N, of that one, at rest in the posture
 };
 std::vector<WeakJoint> find_weak(const model::Scenario& scenario, const ArmModel& arm) {
   const JointVector zero = JointVector::Zero(arm.joint_count());
-  const JointVector needed =
+  const JointVector torques =
       inverse_dynamics(arm, {joint_vector(scenario.robot->posture), zero, zero}, {}, scenario.gravity);
+  const auto needed = [&](std::size_t joint) { return std::abs(torques[static_cast<Eigen::Index>(joint)]); };
   std::vector<WeakJoint> weak;
   for (std::size_t i = 0; i < arm.joints.size(); ++i) {
-    const double torque = std::abs(needed[static_cast<Eigen::Index>(i)]);
-    if (torque > arm.joints[i].max_effort) weak.push_back({i, torque});
+    for (std::size_t k = 0; k < arm.joints.size(); ++k) {
+      if (arm.joints[k].max_effort != arm.joints[i].max_effort || needed(k) <= arm.joints[k].max_effort) continue;
+      weak.push_back({i, k, needed(k)});
+      break;
+    }
   }
   return weak;
 }
@@ -121,12 +127,12 @@ std::vector<std::string> find_weak_joints(const model::Scenario& scenario) {
   const ArmModel arm = load_as_written(scenario);
   std::vector<std::string> found;
   for (const WeakJoint& weak : find_weak(scenario, arm)) {
-    const Joint& joint = arm.joints[weak.joint];
-    const char* unit = joint.kind == JointKind::Revolute ? "Nm" : "N";
-    found.push_back(
-        fmt::format("{}: joint '{}': effort {:g} {} is taken as unknown: the arm needs {:.0f} {} to hold itself "
-                    "in its posture",
-                    urdf_path(scenario).string(), joint.name, joint.max_effort, unit, weak.needed, unit));
+    const Joint &joint = arm.joints[weak.joint], &held = arm.joints[weak.cannot_hold];
+    const char* unit = held.kind == JointKind::Revolute ? "Nm" : "N";
+    found.push_back(fmt::format(
+        "{}: joint '{}': effort {:g} is taken as unknown: its torque does not stop the robot; to hold the arm in its "
+        "posture joint '{}' needs {:.0f} {}",
+        urdf_path(scenario).string(), joint.name, joint.max_effort, held.name, weak.needed, unit));
   }
   return found;
 }

@@ -23,8 +23,8 @@ namespace snug::robot {
 /// 'x': ...", a warning for each. Such a joint has Joint::max_effort infinity.
 [[nodiscard]] std::vector<std::string> find_unknown_efforts(const std::filesystem::path& path);
 
-/// Joints whose effort in the URDF is less than what the arm needs to hold itself, standing in its posture, as some
-/// public files have that nobody has checked: a warning for each. Throws as load_arm.
+/// Joints whose effort in the URDF is less than what the arm needs to hold itself, standing in its posture, and those
+/// with the same number, as some public files have for all that nobody knew: a warning for each. Throws as load_arm.
 [[nodiscard]] std::vector<std::string> find_weak_joints(const model::Scenario& scenario);
 
 /// Joint values of a list, which load_arm has checked.

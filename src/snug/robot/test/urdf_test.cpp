@@ -1,4 +1,5 @@
 // Reading URDF: what is understood, and how everything else is refused: file, line, element, what would do.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -410,33 +411,39 @@ TEST(Urdf, AToolPoseStandsForALinkOfTheFile) {
 }
 
 TEST(Urdf, AnEffortThatCannotHoldTheArmIsTakenAsUnknown) {
-  // 3 kg at 0.4 m, held level: 11.8 Nm by hand.
-  const auto effort_of =
-      [](double effort, std::vector<std::string>& warnings) {
-        const snug::test::ScratchFolder folder;
-        std::ofstream(folder / "arm.urdf")
-            << R"(<robot name="a"><link name="base"/><link name="arm"><inertial><origin xyz="0.4 0 0"/>
-<mass value="3"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial></link>
-<joint name="j" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 1 0"/><limit lower="-3" upper="3" velocity="2"
-effort=")" << effort
-            << R"("/></joint></robot>)";
-        model::Scenario scenario = test::demonstrator();
-        scenario.source_name = (folder / "cell.yaml").string();
-        scenario.robot.emplace();
-        scenario.robot->urdf = "arm.urdf";
-        scenario.robot->tool_frame = scenario.robot->flange_frame = scenario.robot->sensor_frame = "arm";
-        scenario.robot->posture = {0.0};
-        warnings = find_weak_joints(scenario);
-        return load_arm(scenario).joints.front().max_effort;
-      };
+  // 3 kg at 0.4 m, held level: 11.8 Nm by hand. The first joint is vertical and holds nothing.
+  const auto efforts_of = [](double first, double second, std::vector<std::string>& warnings) {
+    const snug::test::ScratchFolder folder;
+    const auto joint = [](const char* name, const char* parent, const char* child, const char* axis, double effort) {
+      return fmt::format(R"(<joint name="{}" type="revolute"><parent link="{}"/><child link="{}"/><axis xyz="{}"/>
+<limit lower="-3" upper="3" velocity="2" effort="{}"/></joint>)",
+                         name, parent, child, axis, effort);
+    };
+    std::ofstream(folder / "arm.urdf")
+        << R"(<robot name="a"><link name="base"/><link name="column"/><link name="arm"><inertial><origin xyz="0.4 0 0"/>
+<mass value="3"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial></link>)"
+        << joint("pan", "base", "column", "0 0 1", first) << joint("lift", "column", "arm", "0 1 0", second)
+        << "</robot>";
+    model::Scenario scenario = test::demonstrator();
+    scenario.source_name = (folder / "cell.yaml").string();
+    scenario.robot.emplace();
+    scenario.robot->urdf = "arm.urdf";
+    scenario.robot->tool_frame = scenario.robot->flange_frame = scenario.robot->sensor_frame = "arm";
+    scenario.robot->posture = {0.0, 0.0};
+    warnings = find_weak_joints(scenario);
+    const ArmModel arm = load_arm(scenario);
+    return std::pair(arm.joints[0].max_effort, arm.joints[1].max_effort);
+  };
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
   std::vector<std::string> warnings;
-  EXPECT_EQ(effort_of(11.9, warnings), 11.9);
+  EXPECT_EQ(efforts_of(2.0, 11.9, warnings), std::pair(2.0, 11.9));
   EXPECT_TRUE(warnings.empty());
-  EXPECT_EQ(effort_of(11.7, warnings), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(efforts_of(2.0, 11.7, warnings), std::pair(2.0, kUnknown));
   ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_NE(warnings.front().find("joint 'j': effort 11.7 Nm is taken as unknown: the arm needs 12 Nm"),
-            std::string::npos)
-      << warnings.front();
+  EXPECT_NE(warnings.front().find("joint 'lift': effort 11.7 is taken as unknown"), std::string::npos);
+  EXPECT_NE(warnings.front().find("needs 12 Nm"), std::string::npos) << warnings.front();
+  EXPECT_EQ(efforts_of(11.7, 11.7, warnings), std::pair(kUnknown, kUnknown)) << "a number for all that nobody knew";
+  EXPECT_EQ(warnings.size(), 2U);
 }
 
 }  // namespace

@@ -1,0 +1,85 @@
+// Ray: the program that hands out chunks.
+#include "snug/study/ray.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace snug::study {
+namespace {
+
+// A node that is cut off may go on filling a table for a while: a task that finds it locked tries again.
+constexpr const char* kRayProgram = R"(
+import ctypes
+import os
+import signal
+import subprocess
+import sys
+import time
+
+try:
+    import ray
+except ImportError:
+    print(f"snug: error: {sys.executable}: no package ray; expected a Python that has it (pip install ray), named by "
+          "SNUG_PYTHON", file=sys.stderr)
+    sys.exit(2)
+
+
+def die_with_worker():
+    ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
+
+
+@ray.remote(num_cpus=1, max_retries=-1)
+def fill(chunks):
+    """Fills tables; the exit code and the last words of the program."""
+    for attempt in range(ATTEMPTS):
+        done = subprocess.run([*COMMAND, "--chunks", chunks], cwd=FOLDER, capture_output=True, text=True,
+                              preexec_fn=die_with_worker)
+        if done.returncode != 1:
+            break
+        time.sleep(min(30.0, 0.5 * 2.0 ** attempt))
+    return chunks, done.returncode, done.stderr[-4000:]
+
+
+def main():
+    try:
+        ray.init(address=None if ADDRESS == "local" else ADDRESS, log_to_driver=False, include_dashboard=False
+                 if ADDRESS == "local" else None)
+    except (ConnectionError, ValueError, RuntimeError) as error:
+        print(f"snug: error: --ray {ADDRESS}: {str(error).splitlines()[0]}; expected the address of a Ray cluster, or "
+              "local", file=sys.stderr)
+        return 2
+    waiting, worst = [fill.remote(chunks) for chunks in CHUNKS], 0
+    while waiting:
+        ready, waiting = ray.wait(waiting)
+        for chunks, code, words in ray.get(ready):
+            if code:
+                print(f"chunks {chunks}: {words.strip()}", file=sys.stderr)
+            worst = max(worst, code)
+        if sys.stderr.isatty():
+            print(f"\r{len(CHUNKS) - len(waiting)} of {len(CHUNKS)} tasks", end="", file=sys.stderr)
+    return worst
+
+
+sys.exit(main())
+)";
+
+}  // namespace
+
+std::string ray_program(const Study& study, const Folder& folder, const ArrayPlan& plan, const std::string& program,
+                        const std::string& file, const std::string& address) {
+  const auto literal = [](const auto& value) { return nlohmann::json(value).dump(); };  // also one of Python
+  std::string ranges;
+  for (const auto& [first, last] : plan.tasks)
+    ranges += (ranges.empty() ? "" : ", ") + literal(fmt::format("{}-{}", first, last));
+  const std::vector<std::string> command = {
+      program, "study", file, "--dir", std::filesystem::absolute(folder.path()).string(), "--threads", "1"};
+  return fmt::format(
+             "# Study {}: hands its chunks to a Ray cluster. Rows that are done are not done again.\n"
+             "ADDRESS = {}\nFOLDER = {}\nCOMMAND = {}\nCHUNKS = [{}]\nATTEMPTS = 8\n",
+             literal(study.name), literal(address), literal(std::filesystem::current_path().string()), literal(command),
+             ranges) +
+         kRayProgram;
+}
+
+}  // namespace snug::study
