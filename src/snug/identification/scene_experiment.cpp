@@ -311,8 +311,10 @@ std::vector<MotionError> SceneExperiment::evaluate_scenes(std::span<const Eigen:
   parallel_for(static_cast<int>(first.size()), threads_, [&](int index, int) {
     const auto i = static_cast<std::size_t>(index);
     const Job& job = jobs[first[i]];
-    if (!scenarios[job.point]) simulated[i].failure = failures[job.point];
-    simulated[i] = simulate(*scenarios[job.point], job, until);
+    if (scenarios[job.point])
+      simulated[i] = simulate(*scenarios[job.point], job, until);
+    else
+      simulated[i].failure = failures[job.point];
   });
   std::vector<MotionError> errors(jobs.size());
   parallel_for(static_cast<int>(jobs.size()), threads_, [&](int index, int) {
