@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "snug/core/input_error.hpp"
@@ -98,6 +99,21 @@ Vector3 median_of(const std::vector<Vector3>& values) {
   return result;
 }
 
+/// The one that the others are nearest to, all together: what rotation vectors are seen from, so that none of most of
+/// them is near half a turn, where its sign is chance.
+Matrix3 middle_of(const std::vector<Matrix3>& rotations) {
+  Matrix3 middle = Matrix3::Identity();
+  double least = std::numeric_limits<double>::infinity();
+  for (const Matrix3& one : rotations) {
+    double sum = 0.0;
+    for (const Matrix3& other : rotations) sum += angle_between(one, other);
+    if (sum >= least) continue;
+    least = sum;
+    middle = one;
+  }
+  return middle;
+}
+
 /// Whether `value` is off the line through its neighbours.
 bool jumps(double time, const Vector3& value, const std::vector<double>& times, const std::vector<Vector3>& values,
            double noise) {
@@ -132,21 +148,22 @@ void reject_jumps(const model::SceneTask& task, RecordedMotion& motion) {
       if (record::is_tracked(body.poses[k])) seen.push_back(k);
     std::vector<std::size_t> odd;
     for (std::size_t i = 0; i < seen.size(); ++i) {
-      if (seen[i] == 0 && task.start.from != model::StartFrom::Scenario) continue;
       std::vector<double> times;
       std::vector<Vector3> places, turns;
       const std::size_t begin = i > kSide ? i - kSide : 0, end = std::min(seen.size(), i + kSide + 1);
-      const Matrix3 R = body.poses[seen[i]].pose().R;
+      std::vector<Matrix3> rotations;
       for (std::size_t j = begin; j < end; ++j) {
         if (j == i) continue;
         times.push_back(motion.times[seen[j]]);
         places.push_back(body.poses[seen[j]].p);
-        turns.push_back(log_rotation(R.transpose() * body.poses[seen[j]].pose().R));
+        rotations.push_back(body.poses[seen[j]].pose().R);
       }
       if (times.size() < kFewest) continue;
+      const Matrix3 R = middle_of(rotations);
+      for (const Matrix3& other : rotations) turns.push_back(log_rotation(R.transpose() * other));
       const double time = motion.times[seen[i]];
       if (jumps(time, body.poses[seen[i]].p, times, places, task.position_noise) ||
-          jumps(time, Vector3::Zero(), times, turns, task.rotation_noise))
+          jumps(time, log_rotation(R.transpose() * body.poses[seen[i]].pose().R), times, turns, task.rotation_noise))
         odd.push_back(seen[i]);
     }
     if (static_cast<double>(odd.size()) > kMost * static_cast<double>(seen.size())) continue;

@@ -12,8 +12,8 @@ void check_conventions(const model::SceneTask& task, const model::Scenario& scen
 
 /// Samples of tracked bodies that lie further from the line through their neighbours than eight times the noise, and
 /// six times what those scatter about it, become lost, and are counted (RecordedBody::rejected). Where that is more
-/// than a tenth of a body's samples, none does: what is so common is no outlier. A first row that bodies start from
-/// stays.
+/// than a tenth of a body's samples, none does: what is so common is no outlier. Those with fewer than four neighbours
+/// within three samples stay: the first one and the last.
 void reject_jumps(const model::SceneTask& task, RecordedMotion& motion);
 
 }  // namespace snug::identification::internal
