@@ -188,6 +188,7 @@ class Estimator {
     }
     tracked_ = boxes;
     ids_ = ids;
+    fit_ = internal::kept_of(fit_, is_good);
   }
 
   /// What is seen of the place where box i is believed to be, among the tracked ones.

@@ -127,6 +127,19 @@ FitStep step_of(const FitSettings& settings, bool planes_only, int step, int lef
 
 }  // namespace
 
+FitResult kept_of(const FitResult& fit, const std::vector<bool>& is_kept) {
+  FitResult kept;
+  for (std::size_t i = 0; i < fit.boxes.size(); ++i) {
+    if (!is_kept[i]) continue;
+    kept.boxes.push_back(fit.boxes[i]);
+    kept.covariance.push_back(fit.covariance[i]);
+    kept.size_misfit.push_back(fit.size_misfit[i]);
+    kept.is_larger.push_back(fit.is_larger[i]);
+    kept.size_error.push_back(fit.size_error[i]);
+  }
+  return kept;
+}
+
 FitResult fit_boxes(const FitContext& context, std::vector<TrackedBox> boxes, FitStart start, int steps, int held) {
   FitResult result;
   const auto first = static_cast<std::size_t>(held);

@@ -15,6 +15,9 @@ struct FitResult {
   std::vector<double> size_error;  ///< the largest of them, in standard deviations
 };
 
+/// The boxes that are kept, each with what was found of it.
+[[nodiscard]] FitResult kept_of(const FitResult& fit, const std::vector<bool>& is_kept);
+
 enum class FitStart {
   Belief,  ///< off by centimetres
   Near,    ///< off by millimetres

@@ -108,6 +108,30 @@ TEST(FitBoxes, AStrongBeliefIsNotMovedByTheFrame) {
   EXPECT_LT((fit.boxes[0].X_CP.p - scene.tracked(kFittedBox, off).X_CP.p).norm(), 1e-5);
 }
 
+TEST(KeptOf, WhatWasFoundOfABoxStaysWithIt) {
+  const std::vector<Box> all = {kFittedBox,
+                                {"b", Vector3(0.10, 0.12, 0.06), level(0.10, 0.12, 0.03)},
+                                {"c", Vector3(0.08, 0.10, 0.05), level(-0.10, 0.20, 0.025)}};
+  const FitScene scene(all);
+  std::vector<TrackedBox> boxes;
+  for (const Box& box : all) boxes.push_back(scene.tracked(box, Vector3(0.001, 0, 0)));
+  const FitResult fit = fit_boxes(scene.context(), boxes, FitStart::Near, 3);
+  const FitResult kept = kept_of(fit, {false, true, true});
+  ASSERT_EQ(kept.boxes.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(kept.boxes[i].X_CP, fit.boxes[i + 1].X_CP);
+    EXPECT_EQ(kept.covariance[i], fit.covariance[i + 1]);
+    EXPECT_EQ(kept.size_error[i], fit.size_error[i + 1]);
+    EXPECT_EQ(kept.is_larger[i], fit.is_larger[i + 1]);
+    for (int k = 0; k < 3; ++k) {
+      const double own = fit.size_misfit[i + 1](k), now = kept.size_misfit[i](k);
+      EXPECT_TRUE(own == now || (std::isnan(own) && std::isnan(now)));
+    }
+  }
+  EXPECT_NE(fit.size_error[0], fit.size_error[1]) << "boxes of other errors";
+  EXPECT_TRUE(kept_of(fit, {false, false, false}).boxes.empty());
+}
+
 TEST(FitBoxes, NothingToFitIsNothing) {
   const FitScene scene({kFittedBox});
   EXPECT_TRUE(fit_boxes(scene.context(), {}, FitStart::Near, 4).boxes.empty());
