@@ -18,7 +18,7 @@ std::vector<FaceFeature> faces_of(const FitScene& scene, const TrackedBox& track
 }
 
 /// The face that looks up most, which is seen whole.
-const FaceFeature& top_of(const std::vector<FaceFeature>& faces) {
+FaceFeature top_of(const std::vector<FaceFeature>& faces) {
   return *std::ranges::max_element(faces, {}, &FaceFeature::points);
 }
 
@@ -35,7 +35,7 @@ TEST(FitFaces, NothingIsOffWhereTheBeliefIsTrue) {
 
 TEST(FitFaces, ABeliefTooHighIsMeasuredDown) {
   const FitScene scene({kFaceBox});
-  const FaceFeature& top = top_of(faces_of(scene, scene.tracked(kFaceBox, Vector3(0, 0, -0.003))));
+  const FaceFeature top = top_of(faces_of(scene, scene.tracked(kFaceBox, Vector3(0, 0, -0.003))));
   EXPECT_NEAR(top.rows.measured(0), -0.003, 1e-5) << "outward is up, toward the camera";
   EXPECT_EQ(top.face, 5) << "+z of the box";
 }
@@ -108,7 +108,7 @@ TEST(FitFaces, CovarianceIsPositiveAndGrowsWithTheNoise) {
   double before = 0.0;
   for (const char* preset : {"ideal", "structured_light", "active_stereo"}) {
     const FitScene scene({kFaceBox}, preset);
-    const FaceFeature& top = top_of(faces_of(scene, scene.tracked(kFaceBox)));
+    const FaceFeature top = top_of(faces_of(scene, scene.tracked(kFaceBox)));
     const Matrix3& covariance = top.rows.covariance;
     EXPECT_LT((covariance - covariance.transpose()).cwiseAbs().maxCoeff(), 1e-15);
     EXPECT_GT(Eigen::LLT<Matrix3>(covariance).matrixL().toDenseMatrix().diagonal().minCoeff(), 0.0);
@@ -129,7 +129,7 @@ TEST(FitFaces, OffsetsAreOffByAsMuchAsTheirVarianceSays) {
     Box as_seen = kFaceBox;
     as_seen.X_WP = cell.camera.X_WC * draw.X_CD.inverse() * cell.camera.X_WC.inverse() * kFaceBox.X_WP;
     const TrackedBox tracked = scene.tracked(as_seen);
-    const FaceFeature& top = top_of(faces_of(scene, tracked));
+    const FaceFeature top = top_of(faces_of(scene, tracked));
     // The scale of lengths acts about the focus; what it does to a depth is known.
     const double scaled = -draw.scale * (tracked.X_CP.p.z() - tracked.half.z() - cell.camera.range.focus);
     sum += std::pow(top.rows.measured(0) - scaled, 2) / (top.rows.covariance(0, 0) * kFrames);
