@@ -94,6 +94,21 @@ TEST(BestTogether, WithoutTriesLeftWhatItHasIsStillPossible) {
   EXPECT_TRUE(best_together({}, 3, settings).empty());
 }
 
+TEST(BestTogether, AsksForNoOrderOfThePlaces) {
+  const RelocationSettings settings;
+  Rng rng = Rng(10).split("order of places");
+  for (int i = 0; i < 100; ++i) {
+    std::vector<Place> places;
+    for (int k = 0; k < 9; ++k) {
+      const double x = rng.uniform(0.0, 0.5), gain = rng.uniform(-200.0, 1000.0);
+      places.push_back(place_at(static_cast<std::size_t>(rng.index(3)), x, gain));
+    }
+    const double gain = gain_of(best_together(places, 3, settings));
+    std::ranges::reverse(places);
+    EXPECT_NEAR(gain_of(best_together(places, 3, settings)), gain, 1e-9);
+  }
+}
+
 /// A frame of boxes, of which none is known where it is.
 struct Search {
   explicit Search(const std::vector<Box>& boxes)
@@ -137,6 +152,22 @@ TEST(Relocate, GivesTwoBoxesThePlacesThatTheirSizesSay) {
       search.run({search.lost(now[0].size, now[1].X_WP), search.lost(now[1].size, now[0].X_WP)});
   ASSERT_EQ(places.size(), 2u);
   for (const Place& place : places) EXPECT_LT(search.error(place, now[place.lost]), 3e-3) << place.lost;
+}
+
+TEST(Relocate, AsksForNoOrderOfTheLost) {
+  const std::vector<Box> now = {{"a", Vector3(0.18, 0.12, 0.08), level(-0.05, 0.16, 0.04, 0.2)},
+                                {"b", Vector3(0.15, 0.10, 0.06), level(0.05, -0.14, 0.03, -0.3)}};
+  const Search search(now);
+  const std::vector<Lost> lost = {search.lost(now[0].size, level(0.0, 0.0, 0.04)),
+                                  search.lost(now[1].size, level(0.0, 0.0, 0.03))};
+  const std::vector<Place> a = search.run(lost), b = search.run({lost[1], lost[0]});
+  ASSERT_EQ(a.size(), 2u);
+  ASSERT_EQ(b.size(), 2u);
+  for (const Place& place : a) {
+    const Place& other = b[0].lost == 1 - place.lost ? b[0] : b[1];
+    EXPECT_EQ(other.box.X_CP, place.box.X_CP);
+    EXPECT_EQ(other.gain, place.gain);
+  }
 }
 
 }  // namespace
