@@ -19,7 +19,7 @@ using internal::pixel_bits;
 
 constexpr int kRowsRenderedAtOnce = 32;
 constexpr double kReaches = 3.0;      // of interreflection: what is left at that many is 5 %
-constexpr int kFarthestCorner = 200;  // px
+constexpr int kFarthestCorner = 200;  // px: distances are kept in 8 bits
 constexpr double kLitDepth = 3e-3;    // m: what the projector sees within this of a point is the point
 
 /// The camera as it is: pose and focal lengths with their errors.

@@ -15,7 +15,8 @@
 namespace snug::identification {
 namespace {
 
-constexpr double kCentreKnown = 0.005, kCentreWeak = 0.02;  // m
+constexpr double kCentreKnown = 0.005,
+                 kCentreWeak = 0.02;  // m: the aim of docs/theory/identification.md, section 7; weak to four times that
 
 Verdict judge_centre(double deviation) {
   if (deviation <= kCentreKnown) return Verdict::Identified;

@@ -17,9 +17,9 @@ namespace {
 
 using internal::SceneSearch;
 
-constexpr double kRescue = 2.0;         // the same: worth looking elsewhere before saying so
-constexpr double kUnknownError = 0.25;  // of what the bounds span: the data do not say where in them
-constexpr double kShareNamed = 0.3;     // of a direction's length, for a parameter to be named in it
+constexpr double kRescue = 2.0;         // chi2 per degree of freedom: worth looking elsewhere before saying so
+constexpr double kUnknownError = 0.25;  // of what the bounds span: a uniform draw within them has a deviation of 0.29
+constexpr double kShareNamed = 0.3;     // of a direction's length: what is smaller has less than a tenth of its square
 constexpr double kVerdictSpan = 0.25;   // of the bounds: what a parameter near zero is judged against
 constexpr double kAtBound = 1e-6;       // of the span
 
@@ -182,7 +182,7 @@ bool is_better(const Found& a, const Found& b) {
 /// From the start, and where that leaves parameters untold or the recordings unexplained, from the best of points
 /// spread over all bounds: a wall that the first simulation does not reach is reached from there.
 Found fit_everywhere(SceneSearch& search, const std::vector<std::size_t>& free) {
-  constexpr int kPoints = 20;  // for each parameter
+  constexpr int kPoints = 20;  // for each parameter (docs/decisions/0075)
   constexpr std::size_t kStarts = 3;
   constexpr double kLong = 300.0;  // s, of simulation for a look around: then only the start counts
   const Eigen::VectorXd start = search.best();

@@ -15,9 +15,10 @@
 namespace snug::validation {
 namespace {
 
+// Steps of docs/theory/validation.md, section 2; those of slips: docs/decisions/0077.
 constexpr double kCoarse = 0.1;         // s, grid of the first search
 constexpr double kFine = 0.01;          // s, grid of the second
-constexpr double kBlock = 5.0;          // s
+constexpr double kBlock = 5.0;          // s: errors of the model last for seconds, and count as one
 constexpr double kLeastOverlap = 0.25;  // of the shorter one
 constexpr double kLeastLikeness = 0.5;
 constexpr int kSteps = 40;  // of Gauss-Newton: it takes three to ten, more where contacts make steps
@@ -385,7 +386,8 @@ void apply(const BlockFit& change, ClockFit& fit) {
 /// Slips, one after the other, as long as one explains far more than chance; with them shift and rate anew.
 void find_steps(Comparison& comparison, const ClockOptions& options, ClockFit& fit) {
   constexpr std::size_t kMostSteps = 5, kFewestBlocks = 8;
-  constexpr double kGain = 25.0, kLeastSize = 5e-4;
+  // Two numbers for each of some 50 places: a gain of 25 is chance in less than one of a thousand recordings.
+  constexpr double kGain = 25.0, kLeastSize = 5e-4;  // of chi-square; s
   if (shifts_of(comparison, fit).size() < kFewestBlocks) return;
   const ClockFit before = fit;
   for (bool goes_on = true; goes_on && fit.steps.size() < kMostSteps;) {

@@ -7,6 +7,7 @@
 namespace snug::identification::internal {
 namespace {
 
+// Chosen on recorded programs (docs/decisions/0032 and 0051; docs/theory/scene-identification.md, b and s).
 // What both steps have in common, squared, over what they have opposite: the first is what straight lines miss. Where
 // steps are as small as standard errors, one unit is what chance may do.
 constexpr double kBentShare = 0.2, kBentLeast = 100.0;

@@ -16,7 +16,7 @@ namespace snug::identification::internal {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kFirstSubplex = 0.05;  // of the span
+constexpr double kFirstSubplex = 0.05;  // of the span, as the largest step of the least squares (kMostStep)
 
 std::string identity_of(const SceneExperiment& experiment) {
   const model::SceneTask& task = experiment.task();
