@@ -24,12 +24,8 @@ ErrorModel::ErrorModel(const model::CameraParams& camera) : camera_(camera) {
     double p = lost[d];
     if (d == 0) p = 1.0 - (1.0 - p) * (1.0 - camera.errors.mixed_pixels.probability);
     edge_shift_ += p;
-    edge_variance_ += p * (1.0 - p);
   }
-  if (lost.empty()) {
-    edge_shift_ = camera.errors.mixed_pixels.probability;
-    edge_variance_ = edge_shift_ * (1.0 - edge_shift_);
-  }
+  if (lost.empty()) edge_shift_ = camera.errors.mixed_pixels.probability;
 }
 
 double ErrorModel::point_noise(double depth) const {

@@ -20,16 +20,15 @@ class ErrorModel {
   [[nodiscard]] double wave_covariance(double dcol, double drow) const;
   /// Standard deviation of a length, m.
   [[nodiscard]] double length_error(double length) const { return camera_.errors.trueness.dimension * length; }
-  /// How many pixels of a face are missing, on average, at each crossing of an edge of depth; and their variance.
+  /// How many pixels of a face are missing, on average, at each crossing of an edge of depth.
   [[nodiscard]] double edge_shift() const { return edge_shift_; }
-  [[nodiscard]] double edge_variance() const { return edge_variance_; }
   /// Error [translation; rotation] in C of a pose at p_CP that comes from the camera's own place and scale: times seven
   /// standard normals, the same for all poses.
   [[nodiscard]] camera::CommonError common_error(const Vector3& p_CP) const;
 
  private:
   model::CameraParams camera_;
-  double likeness_ = 1.0, edge_shift_ = 0.0, edge_variance_ = 0.0;
+  double likeness_ = 1.0, edge_shift_ = 0.0;
 };
 
 }  // namespace snug::box_estimation::internal
