@@ -178,6 +178,88 @@ TEST(FitClock, RefusesWhatHasNothingInCommon) {
   EXPECT_EQ(short_one.error(), NoClock::NothingInCommon);
 }
 
+TEST(ClockFit, GoesThereAndBackAcrossSlipsUpAndDown) {
+  ClockFit fit;
+  fit.shift = -2.0;
+  fit.rate = 8e-5;
+  fit.middle = 60.0;
+  fit.steps = {{30.0, 0.020, 1e-4}, {70.0, -0.050, 1e-4}, {90.0, 0.004, 1e-4}};
+  EXPECT_EQ(fit.slipped(30.0), 0.0);
+  EXPECT_EQ(fit.slipped(30.1), 0.020);
+  EXPECT_NEAR(fit.slipped(100.0), -0.026, 1e-15);
+  for (double t = 0.0; t < 120.0; t += 0.37) {
+    // What a slip back repeats is told as the time of the slip: nothing else can be known of it.
+    const double back = fit.to_reference(fit.to_measured(t));
+    EXPECT_NEAR(back, t, t > 69.9 && t < 70.1 ? 0.051 : 1e-9) << t;
+  }
+  double before = fit.to_reference(-10.0);
+  for (double measured = -10.0; measured < 130.0; measured += 0.003) {
+    const double now = fit.to_reference(measured);
+    EXPECT_GE(now, before) << measured << ": time does not run backward";
+    before = now;
+  }
+}
+
+TEST(FitClock, OfTheTwoTheOtherWayRoundIsTheOppositeShift) {
+  const Rng rng(11);
+  const Signals a = sampled(125.0, 0.0, 0.0, 0.0, rng, 120.0), b = sampled(125.0, 2.345, 0.0, 0.0, rng, 120.0);
+  const auto forth = fit_clock(a, b), back = fit_clock(b, a);
+  ASSERT_TRUE(forth && back);
+  EXPECT_NEAR(forth->shift, 2.345, 2e-6);
+  EXPECT_NEAR(back->shift, -2.345, 2e-6);
+}
+
+TEST(FitClock, AsksForNoOrderOfChannelsAndNoUnit) {
+  const Rng rng(12);
+  const Signals a = sampled(125.0, 0.0, 0.0, 0.0, rng, 120.0), b = sampled(200.0, -1.5, 0.0, 0.01, rng, 120.0);
+  const auto plain = fit_clock(a, b);
+  Signals a2 = a, b2 = b;
+  for (Signals* one : {&a2, &b2}) {
+    std::swap(one->channels[0], one->channels[2]);
+    for (auto& channel : one->channels)
+      for (double& value : channel) value *= 1024.0;  // exact in binary
+  }
+  const auto other = fit_clock(a2, b2);
+  ASSERT_TRUE(plain && other);
+  EXPECT_NEAR(plain->shift, other->shift, 1e-6);
+  EXPECT_NEAR(plain->shift_error, other->shift_error, 0.05 * plain->shift_error);
+  EXPECT_NEAR(plain->correlation, other->correlation, 1e-6);
+}
+
+TEST(FitClock, LooksAsFarAsItIsAllowedTo) {
+  const Rng rng(13);
+  const Signals a = sampled(125.0, 0.0, 0.0, 0.0, rng, 120.0), b = sampled(125.0, 30.0, 0.0, 0.0, rng, 120.0);
+  ClockOptions options;
+  options.longest_shift = 35.0;
+  const auto found = fit_clock(a, b, options);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->shift, 30.0, 1e-5);
+  options.longest_shift = 10.0;
+  const auto other = fit_clock(a, b, options);
+  EXPECT_TRUE(!other || std::abs(other->shift) <= 10.2);
+}
+
+TEST(FitClock, ExpectsOfAClockWhatClocksAre) {
+  // With the same signals a rate that is expected to be small is found smaller, and said to be known better.
+  const Rng rng(14);
+  const Signals a = sampled(125.0, 0.0, 0.0, 0.0, rng), b = sampled(125.0, 0.0, 1e-4, 0.05, rng);
+  ClockOptions loose, strict;
+  loose.finds_steps = strict.finds_steps = false;
+  loose.usual_rate = 1e-2;
+  strict.usual_rate = 1e-6;
+  const auto free = fit_clock(a, b, loose), tempered = fit_clock(a, b, strict);
+  ASSERT_TRUE(free && tempered);
+  EXPECT_NEAR(free->rate, 1e-4, 4.0 * free->rate_error);
+  EXPECT_LT(std::abs(tempered->rate), std::abs(free->rate));
+  EXPECT_LT(tempered->rate_error, free->rate_error);
+}
+
+TEST(NoClock, IsSaidInWords) {
+  EXPECT_STREQ(describe(NoClock::NothingInCommon), "the two have too little in common");
+  EXPECT_STREQ(describe(NoClock::NothingMoves), "nothing moves");
+  EXPECT_STREQ(describe(NoClock::TooUnlike), "no shift makes the two alike");
+}
+
 TEST(FitClock, IsTheSameEveryTime) {
   const Rng rng(9);
   const Signals reference = sampled(125.0, 0.0, 0.0, 0.0, rng), measured = sampled(360.0, 2.0, 1e-5, 0.02, rng);
