@@ -13,8 +13,8 @@ namespace {
 using namespace test;
 
 /// Frame and belief of boxes of which the last one is hidden, and the first was moved by hand.
-struct Disturbed {
-  Disturbed() {
+struct DisturbedScene {
+  DisturbedScene() {
     boxes = three_boxes();
     boxes.push_back({"under", Vector3(0.10, 0.08, 0.04), level(0.13, -0.15, 0.02)});
     boxes.push_back({"over", Vector3(0.12, 0.16, 0.05), level(0.13, -0.15, 0.065)});
@@ -33,7 +33,7 @@ const BoxEstimate& estimate_of(const Estimate& estimate, const std::string& id) 
 }
 
 TEST(EstimateBoxes, AskForNoOrder) {
-  const Disturbed scene;
+  const DisturbedScene scene;
   EstimateInput backwards = scene.input;
   std::ranges::reverse(backwards.boxes);
   const Estimate a = estimate_boxes(scene.frame, scene.input), b = estimate_boxes(scene.frame, backwards);
@@ -51,7 +51,7 @@ TEST(EstimateBoxes, AskForNoOrder) {
 }
 
 TEST(EstimateBoxes, AreTheSameTwice) {
-  const Disturbed scene;
+  const DisturbedScene scene;
   const Estimate a = estimate_boxes(scene.frame, scene.input), b = estimate_boxes(scene.frame, scene.input);
   for (std::size_t i = 0; i < a.boxes.size(); ++i) {
     EXPECT_EQ(a.boxes[i].X_WP, b.boxes[i].X_WP);
@@ -62,7 +62,7 @@ TEST(EstimateBoxes, AreTheSameTwice) {
 
 /// Camera, surroundings, beliefs and region moved together by a turn about the vertical: C sees the same.
 TEST(EstimateBoxes, MoveWithTheWorldThatTheyAreSeenFrom) {
-  const Disturbed scene;
+  const DisturbedScene scene;
   const Estimate here = estimate_boxes(scene.frame, scene.input);
   // A quarter turn keeps the region a region: its corners change places.
   const Pose X{exp_rotation(Vector3(0.0, 0.0, 0.5 * 3.14159265358979323846)), Vector3(0.7, -0.4, 0.1)};
@@ -93,7 +93,7 @@ TEST(EstimateBoxes, MoveWithTheWorldThatTheyAreSeenFrom) {
 }
 
 TEST(EstimateBoxes, HaveCovariancesThatHoldWhatTheyShare) {
-  const Disturbed scene;
+  const DisturbedScene scene;
   for (const BoxEstimate& box : estimate_boxes(scene.frame, scene.input).boxes) {
     SCOPED_TRACE(box.id);
     EXPECT_LT((box.covariance - box.covariance.transpose()).cwiseAbs().maxCoeff(), 1e-12);
@@ -113,7 +113,7 @@ TEST(EstimateBoxes, HaveCovariancesThatHoldWhatTheyShare) {
 
 TEST(EstimateBoxes, AreNotChangedByWhatIsElsewhere) {
   // A box that is believed to be far outside of the picture is hidden, and the others do not notice.
-  const Disturbed scene;
+  const DisturbedScene scene;
   EstimateInput more = scene.input;
   more.boxes.push_back({"elsewhere", Vector3(0.1, 0.1, 0.1), level(5.0, 5.0, 0.05), 0.004, 0.02});
   const Estimate a = estimate_boxes(scene.frame, scene.input), b = estimate_boxes(scene.frame, more);
