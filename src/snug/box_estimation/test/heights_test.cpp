@@ -1,6 +1,7 @@
 // Height maps and regions: against the slow way, at borders, and without a region.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 

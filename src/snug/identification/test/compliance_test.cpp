@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "snug/core/rng.hpp"
 #include "snug/cup/law.hpp"

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "snug/core/rng.hpp"
 #include "snug/cup/law.hpp"

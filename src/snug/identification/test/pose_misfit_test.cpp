@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <numbers>
 
 #include "snug/core/rng.hpp"
@@ -209,12 +208,11 @@ TEST(PredictionError, IsTheShiftOfAMeasuredPose) {
   StaticPoses poses = rest_poses(8);
   const Vector6 off = (Vector6() << 0.0004, -0.0003, 0.0005, 0.003, -0.002, 0.004).finished();
   for (StaticPose& pose : poses.poses) pose.X_ES = moved_by(pose.X_ES, off);
-  for (const WrenchSource source : {WrenchSource::Gravity})
-    for (const Balance& balance : make_balances(poses, source)) {
-      // The equilibrium is the lip's place before it was shifted, whatever the shift: the load is known.
-      const Vector6 error = compute_prediction_error(balance, kMisfitK, poses.frames);
-      EXPECT_LT((error - off).norm(), 1e-7) << error.transpose();
-    }
+  for (const Balance& balance : make_balances(poses, WrenchSource::Gravity)) {
+    // The equilibrium is the lip's place before it was shifted, whatever the shift: the load is known.
+    const Vector6 error = compute_prediction_error(balance, kMisfitK, poses.frames);
+    EXPECT_LT((error - off).norm(), 1e-7) << error.transpose();
+  }
 }
 
 TEST(AtRest, HangsStraightWhereTheCentreOfMassIsBelowTheLip) {

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "snug/identification/test/helpers.hpp"
 #include "snug/record/archive.hpp"
 

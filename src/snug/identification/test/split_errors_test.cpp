@@ -1,6 +1,7 @@
 // What is said of a fit's residuals: when they are no noise, and by how much standard errors grow then.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "snug/identification/internal/scene_search.hpp"

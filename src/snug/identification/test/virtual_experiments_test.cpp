@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -93,7 +94,7 @@ Pluck virtual_pluck(PluckDirection direction, double amplitude) {
   return pluck;
 }
 
-TEST(VirtualPluck, StartsAsidesAndComesToRest) {
+TEST(VirtualPluck, StartsAsideAndComesToRest) {
   const struct {
     PluckDirection direction;
     int axis;  // of the twist at S1

@@ -1,8 +1,8 @@
 // Series and errors of a comparison: continuous, the same in any world and at any time, means where the header says.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "scene.hpp"
 #include "snug/core/rng.hpp"
