@@ -37,10 +37,10 @@ std::string follow_script(const served_ur::UrArm& arm, bool zeroes, std::int32_t
                       load.com.z());
   if (zeroes) text += "  sleep(0.1)\n  zero_ftsensor()\n";
   text += fmt::format(
-      R"(  period = get_steptime()
+      R"(  global period = get_steptime()
   keep = 1.0 - period / {return_time}
   zero = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
-  target = get_target_joint_positions()
+  global target = get_target_joint_positions()
   speed = zero
   offset = zero
   count = read_input_integer_register({count})
@@ -53,8 +53,14 @@ std::string follow_script(const served_ur::UrArm& arm, bool zeroes, std::int32_t
   is_lost = False
   has_begun = False
   state = 1
+  thread follow():
+    while True:
+      servoj(target, t=period, lookahead_time={look_ahead}, gain={gain})
+    end
+  end
   write_output_integer_register({late}, 0)
   write_output_integer_register({state}, {word} + 1)
+  follower = run follow()
   while state == 1:
     now = read_input_integer_register({count})
     mode = read_input_integer_register({mode})
@@ -130,9 +136,10 @@ std::string follow_script(const served_ur::UrArm& arm, bool zeroes, std::int32_t
       set_payload(read_input_float_register({mass}), [read_input_float_register({mass}+1), read_input_float_register({mass}+2), read_input_float_register({mass}+3)])
     end
     if state == 1:
-      servoj(target, t=period, lookahead_time={look_ahead}, gain={gain})
+      sync()
     end
   end
+  kill follower
   stopj({braking})
   write_output_integer_register({late}, late)
   write_output_integer_register({state}, {word} + state)

@@ -13,8 +13,9 @@ namespace snug::remote_ur {
 inline constexpr double kCoast = 0.016;
 inline constexpr double kFade = 0.135;
 
-/// A URScript program. It sets the TCP to frame E and the payload to the gripper, then gives the joints a target each
-/// period (servoj), as RobotCommand says; docs/ur.md has the registers. `zeroes`: it zeroes the force sensor first,
+/// A URScript program. It sets the TCP to frame E and the payload to the gripper, then reads and judges a target each
+/// period, as RobotCommand says, while a thread of it leads the joints there (servoj, which a slow slider makes last
+/// longer than a period); docs/ur.md has the registers. `zeroes`: it zeroes the force sensor first,
 /// which software before 5 does not know. `number`: script_word().
 [[nodiscard]] std::string follow_script(const served_ur::UrArm& arm, bool zeroes, std::int32_t number);
 

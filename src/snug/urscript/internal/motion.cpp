@@ -15,7 +15,8 @@ constexpr double kForceGain = 4e-4;     // m/s for each newton that is missing
 constexpr double kTorqueGain = 0.02;    // rad/s for each newton metre that is missing
 constexpr double kReturnSpeed = 0.1;    // of what a joint may do
 constexpr double kTolerance = 1e-6;     // rad, and share of a speed
-constexpr double kLeastServo = 0.5;     // of a period: the rest of a servo time that gets a period of its own
+constexpr double kLeastServo = 0.5;     // of a period: the rest of a time that gets a period of its own
+constexpr double kSamePeriod = 1e-9;    // of a period
 
 Joints plus(const Joints& a, const Joints& b, double factor) {
   Joints sum{};
@@ -168,24 +169,38 @@ void Motion::move_arc(const Host& host, const Pose& via, const Pose& to, const M
   });
 }
 
-void Motion::servo(const Host& host, const Joints& to, double duration) {
+double Motion::servo(const Host& host, const Joints& to, double duration) {
   if (!(duration > 0.0) || duration > kLongestMove) throw Fault{"a time that is not positive"};
   const Joints from = host.state().target.q;
   mode_ = Mode::Path;
   moves_.clear();
-  const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(duration / host.period() - kLeastServo)));
+  const double end = begin_call(host, duration);
+  const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(end - clock_ - kLeastServo - kSamePeriod)));
   std::vector<Joints> way;
   for (std::size_t k = 0; k <= count; ++k)
     way.push_back(plus(from, plus(to, from, -1.0), static_cast<double>(k) / static_cast<double>(count)));
   way.back() = to;
   add(host, way, static_cast<double>(count));
   is_servo_ = true;
+  return end;
 }
 
-void Motion::speed_joints(const Joints& speed, double acceleration) {
-  if (!(acceleration > 0.0)) throw Fault{"an acceleration that is not positive"};
-  if (mode_ == Mode::ToolSpeed) speed_ = {};
+double Motion::begin_call(const Host& host, double duration) {
+  const double half = kLeastServo * share_ + kSamePeriod;
+  const double begin = std::abs(clock_ - call_end_) <= half ? call_end_ : clock_;
+  return call_end_ = begin + duration / host.period();
+}
+
+bool Motion::has_passed(double end) const { return clock_ >= end - kLeastServo * share_ - kSamePeriod; }
+
+void Motion::speed_joints(const Host& host, const Joints& speed, double acceleration) {
+  if (!(acceleration >= 0.0)) throw Fault{"an acceleration below 0"};
+  const bool is_moving = mode_ == Mode::ToolSpeed || !moves_.empty() || is_servo_;
+  if (mode_ != Mode::JointSpeed)
+    speed_ = is_moving && share_ > 0.0 ? plus({}, host.state().target.qd, 1.0 / share_) : Joints{};
   mode_ = Mode::JointSpeed;
+  moves_.clear();
+  is_servo_ = false;
   wanted_speed_ = speed;
   acceleration_ = acceleration;
 }
@@ -216,6 +231,7 @@ void Motion::brake(const Host& host, double acceleration) {
   }
   way.push_back(way.back());  // at rest
   add(host, way, static_cast<double>(count));
+  moves_.back().is_brake = true;
 }
 
 void Motion::brake(const Host& host) {
@@ -307,27 +323,29 @@ void Motion::step(Host& host, double share) {
   const double dt = host.period();
   if (has_written_ && target.q != written_) return_to_path(host);
   Joints q = target.q;
+  share_ = share;
+  clock_ += share;
   if (mode_ == Mode::Path) {
     if (!end_) end_ = target.q;
-    for (Move& move : moves_) move.time += share;
+    for (Move& move : moves_) move.time += move.is_brake ? 1.0 : share;
     q = path_now();
     while (!moves_.empty() && moves_.front().time >= static_cast<double>(moves_.front().way.size() - 1) - 1e-9)
       moves_.pop_front();
   } else if (mode_ == Mode::JointSpeed) {
     for (std::size_t j = 0; j < kJoints; ++j) {
-      const double most = host.limits().max_speed[j], change = acceleration_ * dt;
-      const double wanted = std::clamp(wanted_speed_[j], -most, most) * share;
+      const double most = host.limits().max_speed[j], change = acceleration_ * dt * share;
+      const double wanted = std::clamp(wanted_speed_[j], -most, most);
       speed_[j] += std::clamp(wanted - speed_[j], -change, change);
-      q[j] = std::clamp(q[j] + speed_[j] * dt, host.limits().lower[j], host.limits().upper[j]);
+      q[j] = std::clamp(q[j] + speed_[j] * dt * share, host.limits().lower[j], host.limits().upper[j]);
     }
   } else {
     const Pose& X_FE = host.state().X_FE;
+    const double passed = dt * share, change = acceleration_ * passed;
     for (std::size_t i = 0; i < 6; ++i)
-      tool_speed_[i] +=
-          std::clamp(wanted_tool_speed_[i] * share - tool_speed_[i], -acceleration_ * dt, acceleration_ * dt);
+      tool_speed_[i] += std::clamp(wanted_tool_speed_[i] - tool_speed_[i], -change, change);
     Pose pose = host.forward(q) * X_FE;
-    pose.p += dt * Vector3(tool_speed_[0], tool_speed_[1], tool_speed_[2]);
-    pose.R = exp_rotation(dt * Vector3(tool_speed_[3], tool_speed_[4], tool_speed_[5])) * pose.R;
+    pose.p += passed * Vector3(tool_speed_[0], tool_speed_[1], tool_speed_[2]);
+    pose.R = exp_rotation(passed * Vector3(tool_speed_[3], tool_speed_[4], tool_speed_[5])) * pose.R;
     if (const std::optional<Joints> found = host.inverse(pose * X_FE.inverse(), q))
       q = *found;
     else

@@ -34,17 +34,24 @@ struct ForceMode {
 /// its end is added to what is left of that one: so blends are continuous in position and speed. All throw Fault where
 /// the arm does not reach, step() where a joint would be too fast or beyond its range: then the target stays. Where a
 /// controller would stop for protection, the Fault says so.
+/// Time of motions passes as the slider lets it: at 25 % a move, a servo time and an acceleration take four times as
+/// long. To brake takes what it says at any slider.
 class Motion {
  public:
   void move_joints(const Host& host, const Joints& to, const MoveSettings& settings);
   void move_line(const Host& host, const Pose& X_BaseE, const MoveSettings& settings);
   /// Through `via` to `to`; turns evenly from the beginning to the end.
   void move_arc(const Host& host, const Pose& via, const Pose& to, const MoveSettings& settings);
-  /// Straight in joints, in this time, at the speed that it takes.
-  void servo(const Host& host, const Joints& to, double duration);
-  void speed_joints(const Joints& speed, double acceleration);
+  /// Straight in joints, in this time of motions, at the speed that it takes. The end: begin_call().
+  double servo(const Host& host, const Joints& to, double duration);
+  /// An acceleration of 0 keeps the speed: programs that divide a change of speed by its time ask for that.
+  void speed_joints(const Host& host, const Joints& speed, double acceleration);
   /// m/s and rad/s of the TCP in Base.
   void speed_tool(const std::array<double, 6>& speed, double acceleration);
+  /// The end, in periods of motion, of a call that lasts `duration` s of it. What the call before it, if it has just
+  /// ended, took too long or not long enough counts: calls in a row take their sum.
+  double begin_call(const Host& host, double duration);
+  [[nodiscard]] bool has_passed(double end) const;
   void brake(const Host& host, double acceleration);
   /// By what every joint can.
   void brake(const Host& host);
@@ -66,6 +73,7 @@ class Motion {
     std::vector<Joints> way;  ///< at each period, less its end
     double time = 0.0;        ///< periods
     double blend_from = 0.0;  ///< periods
+    bool is_brake = false;    ///< whatever the slider says
   };
   using At = std::function<Joints(double share)>;
 
@@ -82,7 +90,10 @@ class Motion {
   std::deque<Move> moves_;
   std::optional<Joints> end_;  ///< where all moves end; none: where the host's target stands
   bool is_servo_ = false;      ///< the path ends with speed
-  Joints speed_{};             ///< JointSpeed: now; rad/s
+  double clock_ = 0.0;         ///< periods of motion so far
+  double call_end_ = 0.0;      ///< of the last call, periods of motion
+  double share_ = 1.0;         ///< of the last period that passed for motions
+  Joints speed_{};             ///< JointSpeed: now, where the slider is full; rad/s
   Joints wanted_speed_{};
   std::array<double, 6> tool_speed_{}, wanted_tool_speed_{};
   double acceleration_ = 1.0;

@@ -60,38 +60,32 @@ Value move_arc(CallContext& call) {
                        {call.number(2, 1.2), call.number(3, 0.25), 0.0, call.number(4, 0.0)});
   return until_done(call);
 }
+/// Until this time of motions (Motion::begin_call): where the slider is slow, it comes later.
+Value until_passed(CallContext& call, double end) {
+  call.wait = [end](CallContext& later, Value&) { return later.motion.has_passed(end); };
+  return {};
+}
 Value servo(CallContext& call) {
   need_motion(call);
   const double duration = std::max(call.number(3, call.host.period()), call.host.period());
-  call.motion.servo(call.host, joints_arg(call, 0), duration);
-  call.wait = [end = call.time + duration](CallContext& later, Value&) {
-    return later.time >= end - 0.5 * later.host.period();
-  };
-  return {};
+  return until_passed(call, call.motion.servo(call.host, joints_arg(call, 0), duration));
 }
 
 /// Returns after the time, or, where there is none, when the speed is reached.
 Value speed_joints(CallContext& call) {
   need_motion(call);
   const Joints speed = joints_arg(call, 0);
-  call.motion.speed_joints(speed, call.number(1, 1.4));
-  if (call.has(2) && call.number(2, 0.0) > 0.0) {
-    call.wait = [end = call.time + call.number(2, 0.0)](CallContext& later, Value&) {
-      return later.time >= end - 0.5 * later.host.period();
-    };
-  } else {
-    call.wait = [speed](CallContext& later, Value&) { return later.motion.has_speed(speed); };
-  }
+  call.motion.speed_joints(call.host, speed, call.number(1, 1.4));
+  const double duration = call.number(2, 0.0);
+  if (duration > 0.0) return until_passed(call, call.motion.begin_call(call.host, duration));
+  call.wait = [speed](CallContext& later, Value&) { return later.motion.has_speed(speed); };
   return {};
 }
 Value speed_tool(CallContext& call) {
   need_motion(call);
   call.motion.speed_tool(six_of(call.arguments[0], "the speed"), call.number(1, 1.2));
   const double duration = std::max(call.number(2, call.host.period()), call.host.period());
-  call.wait = [end = call.time + duration](CallContext& later, Value&) {
-    return later.time >= end - 0.5 * later.host.period();
-  };
-  return {};
+  return until_passed(call, call.motion.begin_call(call.host, duration));
 }
 Value brake(CallContext& call, double acceleration) {
   need_motion(call);

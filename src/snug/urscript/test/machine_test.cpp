@@ -283,6 +283,91 @@ TEST(UrScriptMachine, SpeedsAreReachedAtTheirAcceleration) {
   EXPECT_LE(host.fastest, 0.4 + 1e-9);
 }
 
+/// Time of motions passes as the slider lets it: what lasts 1 s then takes as much longer, on the same way.
+TEST(UrScriptMachine, TimedCallsTakeAsMuchLongerAsTheSliderIsSlow) {
+  for (const double slider : {1.0, 0.5, 0.3, 0.25}) {
+    SCOPED_TRACE(slider);
+    for (const auto& [body, goal] : {std::pair{"servoj([0.001 * i, 0, 0, 0, 0, 0], t=0.008)", 0.125},
+                                     // From rest to 0.25 rad/s in the first of 125 calls.
+                                     std::pair{"speedj([0.25, 0, 0, 0, 0, 0], 31.25, 0.008)", 0.25},
+                                     std::pair{"speedl([0.25, 0, 0, 0, 0, 0], 31.25, 0.008)", 0.25}}) {
+      SCOPED_TRACE(body);
+      FakeHost host;
+      host.state_.speed_fraction = slider;
+      Machine machine = machine_of("  i = 0\n  while i < 125:\n    i = i + 1\n    " + std::string(body) +
+                                   "\n  end\n  write_output_float_register(0, get_target_joint_positions()[0])");
+      EXPECT_EQ(host.run(machine).state, MachineState::Ended);
+      EXPECT_NEAR(host.state_.outputs.floats[0], goal, 0.002);
+      EXPECT_NEAR(static_cast<double>(host.way.size()), 125.0 / slider, 0.02 * 125.0 / slider + 3.0);
+      EXPECT_LE(host.fastest, 0.25 * slider * 1.4);  // a call of 3.33 periods may take 3
+      EXPECT_LE(host.jump, 31.25 * slider + 1e-6);
+    }
+  }
+}
+
+/// A polynomial's speeds, a call for each period, as the maker's client library runs splines: where the slider is slow,
+/// the way is the same.
+TEST(UrScriptMachine, SpeedsOfAPolynomialLeadAlongItAtAnySlider) {
+  for (const double slider : {1.0, 0.4, 0.25}) {
+    SCOPED_TRACE(slider);
+    FakeHost host;
+    host.state_.speed_fraction = slider;
+    // q = 0.5 t^2 (3 - 2 t), 0 <= t <= 1
+    Machine machine = machine_of(R"(  dt = get_steptime()
+  k = 0
+  last = 0
+  while k < 125:
+    k = k + 1
+    t = k * dt
+    v = 3 * t * (1 - t)
+    a = norm(v - last) / dt
+    last = v
+    write_output_float_register(1, t)
+    speedj([v, 0, 0, 0, 0, 0], a, dt)
+  end)");
+    double off = 0.0;
+    for (int i = 0; i < 2000 && machine.status().is_active(); ++i) {
+      const double t = host.state_.outputs.floats[1];
+      machine.step(host);
+      // Somewhere within the call that began at t - dt.
+      const double q = host.state_.target.q[0];
+      const auto at = [](double u) { return 0.5 * u * u * (3.0 - 2.0 * u); };
+      off = std::max(
+          {off, at(std::max(0.0, t - 0.012)) - q, q - at(std::min(1.0, host.state_.outputs.floats[1] + 0.004))});
+      host.state_.q = host.state_.target.q;
+    }
+    EXPECT_EQ(machine.status().state, MachineState::Ended);
+    EXPECT_NEAR(host.state_.target.q[0], 0.5, 1e-3);
+    EXPECT_LT(off, 1e-3);
+  }
+}
+
+/// To brake takes what it says, whatever the slider says; what follows begins at the speed that there is.
+TEST(UrScriptMachine, StopsBrakeAtAnySlider) {
+  for (const double slider : {1.0, 0.25}) {
+    FakeHost host;
+    host.state_.speed_fraction = slider;
+    Machine machine = machine_of(R"(  speedj([0.8, 0, 0, 0, 0, 0], 8.0, 0.4)
+  write_output_float_register(0, get_target_joint_positions()[0])
+  stopj(0.5)
+  write_output_float_register(1, get_target_joint_positions()[0])
+  speedj([0.08, 0, 0, 0, 0, 0], 1.0, 0.008))");
+    EXPECT_EQ(host.run(machine).state, MachineState::Ended);
+    const double speed = 0.8 * slider;
+    EXPECT_NEAR(host.state_.outputs.floats[1] - host.state_.outputs.floats[0], speed * speed / (2.0 * 0.5), 5e-3);
+    EXPECT_LT(host.way.back()[0] - host.state_.outputs.floats[1], 1e-3);
+  }
+  FakeHost host;  // from servoj on, whose speed is not lost
+  Machine machine = machine_of(R"(  i = 0
+  while i < 50:
+    i = i + 1
+    servoj([0.004 * i, 0, 0, 0, 0, 0], t=0.008)
+  end
+  speedj([0.5, 0, 0, 0, 0, 0], 1.0, 0.2))");
+  EXPECT_EQ(host.run(machine).state, MachineState::Ended);
+  EXPECT_NEAR(host.way[70][0] - host.way[60][0], 0.04, 1e-9);
+}
+
 TEST(UrScriptMachine, OutputsInputsAndRegisters) {
   FakeHost host;
   host.state_.digital_inputs = 1U << 3U;
