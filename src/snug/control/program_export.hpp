@@ -12,7 +12,8 @@ namespace snug::control {
 /// A YAML document: trajectory_msgs/JointTrajectory of any arm, and a key `io` beside its own: what the outputs do from
 /// which time on. A point at least every `period` s (a multiple of the tick), more where quintic polynomials between
 /// them (what a joint trajectory controller makes of positions, speeds and accelerations) would leave the run by more
-/// than 0.2 mrad, the speed limits of the joints, or the largest acceleration of the run; the last one at rest.
+/// than 0.2 mrad, the speed limits of the joints, or the largest acceleration of the run; the last one at rest. All is
+/// half a tick later than in the run.
 [[nodiscard]] std::string format_ros_trajectory(const JointRun& run, const RobotProgram& program, double period);
 
 /// One entry of an mc_rtc log; as many texts or numbers as there are samples.

@@ -49,7 +49,7 @@ robot::JointVector rounded(const robot::JointVector& values, int digits) {
 }
 
 /// Without exponents.
-std::string format_list(const robot::JointVector& values, int digits) {
+std::string format_fixed(const robot::JointVector& values, int digits) {
   std::string text = "[";
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     text += fmt::format("{}{:.{}f}", i == 0 ? "" : ", ", values[i], digits);
@@ -60,7 +60,7 @@ std::string format_list(const robot::JointVector& values, int digits) {
 /// The functions with which a script follows a run. Elements are written out: lists have no arithmetic on the older of
 /// the controllers.
 std::string follow_functions(const robot::JointVector& q_start) {
-  std::string text = fmt::format("  global snug_q = {}\n", format_list(q_start, kPositionDigits));
+  std::string text = fmt::format("  global snug_q = {}\n", format_fixed(q_start, kPositionDigits));
   text +=
       "  global snug_qd = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]\n"
       "  global snug_time = 0.0\n"
@@ -217,8 +217,8 @@ class ServoWriter {
     const std::span<const TimedJoints> way = std::span(states_).subspan(at_, end - at_ + 1);
     double time = states_[at_].time;
     for (const std::size_t k : find_knots(way, limits_)) {
-      script_.text += fmt::format("  snug_follow({}, {}, {:.9g})\n", format_list(way[k].q, kPositionDigits),
-                                  format_list(way[k].qd, kSpeedDigits), way[k].time - time);
+      script_.text += fmt::format("  snug_follow({}, {}, {:.9g})\n", format_fixed(way[k].q, kPositionDigits),
+                                  format_fixed(way[k].qd, kSpeedDigits), way[k].time - time);
       time = way[k].time;
       ++script_.knots;
     }
@@ -228,7 +228,7 @@ class ServoWriter {
 
   /// At the joints of that state, from which the script goes on.
   void rest(TimedJoints& state) {
-    script_.text += fmt::format("  snug_rest({})\n", format_list(state.q, kPositionDigits));
+    script_.text += fmt::format("  snug_rest({})\n", format_fixed(state.q, kPositionDigits));
     script_.followed_duration += kSettling;
     state.qd.setZero();
   }

@@ -26,9 +26,10 @@ std::string format_pose(const Pose& X) {
                      turn.z());
 }
 
-std::string format_list(const robot::JointVector& values) {
+std::string format_list(const robot::JointVector& values, int digits) {
   std::string text = "[";
-  for (Eigen::Index i = 0; i < values.size(); ++i) text += fmt::format("{}{:.9g}", i == 0 ? "" : ", ", values[i]);
+  for (Eigen::Index i = 0; i < values.size(); ++i)
+    text += fmt::format("{}{:.{}g}", i == 0 ? "" : ", ", values[i], digits);
   return text + "]";
 }
 

@@ -13,8 +13,8 @@ namespace snug::control::internal {
 
 /// "p[x, y, z, rx, ry, rz]": m, rotation vector in rad.
 [[nodiscard]] std::string format_pose(const Pose& X);
-/// "[a, b, ...]"
-[[nodiscard]] std::string format_list(const robot::JointVector& values);
+/// "[a, b, ...]"; `digits`: that count.
+[[nodiscard]] std::string format_list(const robot::JointVector& values, int digits = 9);
 /// Text that can stand between the quotes of a script or of YAML.
 [[nodiscard]] std::string quotable(const std::string& text);
 
