@@ -170,8 +170,8 @@ class Commands(unittest.TestCase):
             port = any_free.getsockname()[1]
         lines = [line.replace(":5555", f":{port}") for line in lines]
         offset = free_ur_offset() if any("--ur 127.0.0.1" in line for line in lines) else 0
-        lines = [re.sub(r"(--ur|ur check) 127\.0\.0\.1", rf"\g<0> --ur-port-offset {offset}", line) for line in lines]
-        lines = [line.replace("ur://127.0.0.1", f"ur://127.0.0.1:{offset}") for line in lines]
+        lines = [re.sub(r"--ur 127\.0\.0\.1", rf"\g<0> --ur-port-offset {offset}", line) for line in lines]
+        lines = [re.sub(r"(ur://|ur check )127\.0\.0\.1", rf"\g<0>:{offset}", line) for line in lines]
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
             for file in self.path.iterdir():

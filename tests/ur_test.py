@@ -196,7 +196,8 @@ class ServedUr(unittest.TestCase):
     def test_check_reads_a_robot_and_says_what_does_not_fit(self):
         for model, version in (("ur10", "3.15."), ("ur10e", "5.9.")):
             with Served("--model", model) as served:
-                check = [SNUG, "ur", "check", "127.0.0.1", "--scenario", str(CELL), "--ur-port-offset", str(served.offset)]
+                address = f"127.0.0.1:{served.offset}"
+                check = [SNUG, "ur", "check", address, "--scenario", str(CELL)]
                 fitting = subprocess.run([*check, "--json"], capture_output=True, text=True)
                 self.assertEqual(fitting.returncode, 0, fitting.stdout + fitting.stderr)
                 report = json.loads(fitting.stdout)
@@ -211,8 +212,12 @@ class ServedUr(unittest.TestCase):
                 self.assertEqual(off.returncode, 1, off.stderr)
                 self.assertIn("POWER_OFF; needed: RUNNING", off.stdout)
                 self.assertIn("release the brakes", off.stdout)
+                whole = subprocess.run([SNUG, "ur", "check", "ur://" + address, "--scenario", str(CELL)], capture_output=True, text=True)
+                self.assertEqual((whole.returncode, whole.stdout), (off.returncode, off.stdout))
             gone = subprocess.run([*check, "--timeout", "1"], capture_output=True, text=True)
             self.assertEqual(gone.returncode, 2)
+        for address in ("127.0.0.1:", "127.0.0.1:x", "ur://", "127.0.0.1:99999"):
+            assert_refused(subprocess.run([SNUG, "ur", "check", address], capture_output=True, text=True), address, "HOST:N")
             self.assertIn(f"127.0.0.1 port {30001 + served.offset}", gone.stderr)
 
     def test_dashboard_plays_the_programs_of_a_folder(self):

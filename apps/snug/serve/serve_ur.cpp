@@ -49,12 +49,13 @@ class ServingUr {
       server_->stop();
     });
     const int offset = options_.ur.port_offset;
+    const std::string address = *options_.ur.host + (offset != 0 ? ":" + std::to_string(offset) : "");
     std::fprintf(
         stderr,
         "snug: serving %s as a %s at ur://%s, %d Hz: dashboard %d, primary %d, secondary %d, real-time %d, RTDE %d "
         "(Ctrl-C ends it)\n",
-        runs_.simulation().scenario().source_name.c_str(), model_.name, options_.ur.host->c_str(), model_.rate,
-        29999 + offset, 30001 + offset, 30002 + offset, 30003 + offset, 30004 + offset);
+        runs_.simulation().scenario().source_name.c_str(), model_.name, address.c_str(), model_.rate, 29999 + offset,
+        30001 + offset, 30002 + offset, 30003 + offset, 30004 + offset);
     if (const std::string observers = server_->observers(); !observers.empty())
       std::fprintf(stderr, "snug: observers of the boxes at %s\n", observers.c_str());
     server_->run();

@@ -18,15 +18,15 @@
 #include "snug/core/input_error.hpp"
 #include "snug/model/robot_io.hpp"
 #include "snug/remote_ur/compare_robot.hpp"
+#include "snug/remote_ur/rtde_link.hpp"
 
 namespace snug::app {
 namespace {
 
 struct UrCheckOptions {
-  std::string host;
+  std::string address;
   std::string scenario = "scenarios/box-demonstrator.yaml";
   ScenarioChanges changes;
-  int port_offset = 0;
   double patience = 5.0;
   double tolerance_mm = 1.0;
   bool json = false;
@@ -111,8 +111,9 @@ int run_ur_check(const UrCheckOptions& options) {
   const std::string file = find_shipped(options.scenario);
   const model::Scenario scenario = load_changed(file, options.changes);
   if (!scenario.robot) throw InputError(file, "robot", "nothing", "a scenario with a robot");
-  remote_ur::Endpoint endpoint{options.host, options.port_offset, options.patience};
-  if (endpoint.host.starts_with("ur://")) endpoint.host.erase(0, 5);
+  const bool is_whole = options.address.starts_with("ur://");
+  remote_ur::Endpoint endpoint = *remote_ur::endpoint_of_ur((is_whole ? "" : "ur://") + options.address, "HOST");
+  endpoint.patience = options.patience;
   const remote_ur::RobotReport robot = remote_ur::read_robot(endpoint);
   remote_ur::Tolerances tolerances;
   tolerances.position = 1e-3 * options.tolerance_mm;
@@ -140,11 +141,13 @@ void add_ur(CLI::App& app, Action& action) {
                   "`snug ur check --help` says what is read. Example:\n  snug ur check --help");
   const Verb part = verb.part("check", "what of a UR does not fit the scenario's robot, and what to set", kUrCheckHelp);
   UrCheckOptions& options = part.runs(run_ur_check);
-  part.option("host", options.host, "HOST", "IPv4 address or name of the controller").required();
+  part.option(
+          "host", options.address, "HOST",
+          "IPv4 address or name of the controller; HOST:N, with N added to its ports; or ur:// before either, as of "
+          "`snug pack --plant`")
+      .required();
   part.option("--scenario", options.scenario, "SCENARIO.yaml", "whose robot it is to be");
   add_scenario_changes(part, options.changes);
-  part.option("--ur-port-offset", options.port_offset, "N", "added to each port, as that of `snug serve --ur`",
-              whole(0, 35531));
   part.option("--tolerance", options.tolerance_mm, "MM",
               "how far the tool's end may be off by the controller's kinematics, and the TCP", positive());
   part.option("--timeout", options.patience, "SECONDS", "how long to wait for an answer", within(0.01, 1e5));

@@ -109,7 +109,7 @@ RobotSample sample_of(const RtdeValues& values) {
 
 }  // namespace
 
-std::optional<Endpoint> endpoint_of_ur(const std::string& address) {
+std::optional<Endpoint> endpoint_of_ur(const std::string& address, const std::string& option) {
   if (!address.starts_with(kScheme)) return std::nullopt;
   Endpoint endpoint;
   endpoint.host = address.substr(kScheme.size());
@@ -123,7 +123,7 @@ std::optional<Endpoint> endpoint_of_ur(const std::string& address) {
     endpoint.host.resize(colon);
   }
   if (!is_good) {
-    throw InputError("command line", "--plant", "'" + address + "'",
+    throw InputError("command line", option, "'" + address + "'",
                      "ur://HOST, or ur://HOST:N where N is added to the controller's ports (--ur-port-offset)");
   }
   return endpoint;

@@ -9,9 +9,10 @@
 
 namespace snug::remote_ur {
 
-/// The controller at "ur://HOST" or "ur://HOST:OFFSET", where OFFSET is added to its ports as `--ur-port-offset` says.
-/// None: another kind of address. Throws InputError for words that begin so and are no such address.
-[[nodiscard]] std::optional<Endpoint> endpoint_of_ur(const std::string& address);
+/// The controller at "ur://HOST" or "ur://HOST:N", where N is added to its ports as `snug serve --ur-port-offset N`
+/// adds it. None: another kind of address. Throws InputError, about `option`, for words that begin so and are no such
+/// address.
+[[nodiscard]] std::optional<Endpoint> endpoint_of_ur(const std::string& address, const std::string& option = "--plant");
 /// Nobody but this machine is there: 127.0.0.0/8, localhost.
 [[nodiscard]] bool is_loopback_host(const std::string& host);
 /// Throws InputError naming each finding that differs and what to set; TCP and payload do not count: packing sets them.
