@@ -25,7 +25,6 @@ using ur::SafetyMode;
 constexpr double kPowerTime = 0.5;  ///< s, from power on to idle, and from there until the brakes are released
 constexpr double kMovingOut = 0.5;  // s, of motion after a stop that was released
 constexpr int kStopByForce = 157, kStopAskedFor = 209;  // codes of error messages
-constexpr double kUnlockAfter = 5.0;                    // s, that a protective stop lasts at least
 constexpr int kWarning = 2;                             // level of an error message
 constexpr double kPartTime = 0.1;                       // s, that a part which was asked for takes to come
 constexpr std::size_t kMostMessages = 1000;
@@ -145,9 +144,9 @@ void Controller::release_brakes() {
   wants_brakes_released_ = true;
 }
 
-bool Controller::unlock_protective_stop() {
+bool Controller::release_stop(double after) {
   const double since = static_cast<double>(period_ - stopped_since_) * period_of(settings_.model);
-  if (data_.safety_mode != SafetyMode::ProtectiveStop || since < kUnlockAfter) return false;
+  if (data_.safety_mode != SafetyMode::ProtectiveStop || since < after) return false;
   set_safety(SafetyMode::Normal);
   moving_out_ = static_cast<int>(std::lround(kMovingOut / period_of(settings_.model)));
   return true;
@@ -251,7 +250,7 @@ void Controller::run_programs() {
 }
 
 void Controller::advance_mode() {
-  if (is_unlock_wanted_) is_unlock_wanted_ = !unlock_protective_stop();
+  if (is_unlock_wanted_) is_unlock_wanted_ = !release_stop(kUnlockAskedAfter);
   const double since = static_cast<double>(period_ - mode_since_) * period_of(settings_.model);
   if (since < kPowerTime) return;
   if (data_.robot_mode == RobotMode::PowerOn) {

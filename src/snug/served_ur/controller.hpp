@@ -72,7 +72,7 @@ class Controller {
   /// With power, if that is off.
   void release_brakes();
   /// False: there is no protective stop, or it is younger than 5 s.
-  bool unlock_protective_stop();
+  bool unlock_protective_stop() { return release_stop(kUnlockAfter); }
   /// After a fault: the controller starts again without power, with a new cell. It does nothing else.
   void restart_safety();
 
@@ -113,6 +113,12 @@ class Controller {
   [[nodiscard]] double step_seconds() const { return data_.execution_time; }
 
  private:
+  static constexpr double kUnlockAfter = 5.0;  ///< s, that a protective stop lasts at least
+  /// What a script port asks for is done as soon as it may be. The maker's client waits 5 s for it, from when it asks.
+  static constexpr double kUnlockAskedAfter = 4.5;
+
+  /// False: there is no protective stop, or it is younger than `after`, s.
+  bool release_stop(double after);
   void take_inputs();
   void advance_mode();
   void set_mode(ur::RobotMode mode);

@@ -226,24 +226,27 @@ TEST(RemoteUr, ASilentClientStopsTheRobotWithItsVacuumOn) {
 }
 
 /// From the period in which the last command comes, at the highest speed that a joint is driven with: also where the
-/// targets had been late and came back too far away.
+/// targets had been late and came back too far away, and at a slow slider.
 TEST(RemoteUr, TheRobotStandsWithinAFifthOfASecondOfTheLastCommand) {
   for (const ur::Model kind : {ur::Model::Ur10, ur::Model::Ur10e}) {
-    for (const bool comes_back_far : {false, true}) {
-      SCOPED_TRACE(testing::Message() << (kind == ur::Model::Ur10 ? "8 ms" : "2 ms") << comes_back_far);
+    for (const auto& [comes_back_far, slider] : {std::pair{false, 1.0}, std::pair{true, 1.0}, std::pair{false, 0.25}}) {
+      SCOPED_TRACE(testing::Message() << (kind == ur::Model::Ur10 ? "8 ms " : "2 ms ") << comes_back_far << slider);
       model::Scenario served = scenario();
       served.controller.tick = kind == ur::Model::Ur10 ? 0.008 : 0.002;
       SteppedLink link(served, "1", kind);
       const served_ur::UrArm arm(served_ur::test::demonstrator_cell());
       const ur::RobotData& data = link.controller().data();
+      link.controller().inputs().speed_slider_mask = 1;
+      link.controller().inputs().speed_slider_fraction = slider;
       (void)link.start(follow_script(arm, false, 3));
       RobotSample sample;
       RobotCommand command;
       command.mode = RobotCommand::Mode::Moves;
       command.q.fill(data.target_q);
-      const double fastest = scenario().robot->velocity_fraction * arm.facts().joint_speed[5];
+      // A client leads as slowly as the slider says; the robot's servoj then lasts for several periods.
+      const double fastest = slider * scenario().robot->velocity_fraction * arm.facts().joint_speed[5];
       double speed = 0.0;
-      while (speed < fastest) {
+      for (int steady = 0; steady < 8; steady += speed < fastest ? 0 : 1) {
         speed = std::min(fastest, speed + 10.0 * link.period());
         command.q = {command.q[0], command.q[0], command.q[1]};
         command.q[0][5] -= speed * link.period();

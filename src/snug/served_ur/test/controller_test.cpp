@@ -262,9 +262,9 @@ TEST(Controller, AStopThatIsToBeReleasedTooEarlyIsReleasedWhenItMayBe) {
     return one[4] == kMessage && one[14] == kError && one[18] == kAskedFor;
   })) << "with the code that clients know";
   EXPECT_TRUE(controller.obey("set unlock protective stop"));
-  step(controller, 600);
+  step(controller, 540);
   EXPECT_EQ(controller.data().safety_mode, ur::SafetyMode::ProtectiveStop);
-  step(controller, 20);
+  step(controller, 20);  // the maker's client waits 5 s from when it asks
   EXPECT_EQ(controller.data().safety_mode, ur::SafetyMode::Normal);
 }
 
