@@ -217,7 +217,10 @@ class ServedUr(unittest.TestCase):
             gone = subprocess.run([*check, "--timeout", "1"], capture_output=True, text=True)
             self.assertEqual(gone.returncode, 2)
         for address in ("127.0.0.1:", "127.0.0.1:x", "ur://", "127.0.0.1:99999"):
-            assert_refused(subprocess.run([SNUG, "ur", "check", address], capture_output=True, text=True), address, "HOST:N")
+            refused = subprocess.run([SNUG, "ur", "check", address], capture_output=True, text=True)
+            self.assertEqual((refused.returncode, refused.stdout), (2, ""))
+            self.assertIn(address, refused.stderr)
+            self.assertIn("HOST:N", refused.stderr)
             self.assertIn(f"127.0.0.1 port {30001 + served.offset}", gone.stderr)
 
     def test_dashboard_plays_the_programs_of_a_folder(self):
