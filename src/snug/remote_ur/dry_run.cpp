@@ -21,9 +21,13 @@ std::vector<plant::Event> DryRun::advance() {
       continue;
     }
     plant::Feedback fed = packed_.read();
+    fed.times.clear();
+    if (ended->feedback.end.reason == plant::EndReason::Cancelled) {
+      fed.end = ended->feedback.end;
+      return {{fed.time, plant::MotionEnded{fed}}};
+    }
     fed.end = {plant::EndReason::Fault, ended->feedback.end.waypoint, 0.0, 0.0,
                "dry run: " + plant::describe(ended->feedback.end, motion.waypoints)};
-    fed.times.clear();
     return {{fed.time, plant::FaultRaised{plant::EndReason::Fault, fed.end.where}},
             {fed.time, plant::MotionEnded{fed}}};
   }

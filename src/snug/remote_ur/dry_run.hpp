@@ -8,7 +8,8 @@
 namespace snug::remote_ur {
 
 /// Each motion is made by `robot` first and by `packed` then; everything else is `packed` alone. Where the robot does
-/// not come to the end of a motion, the motion is a Fault that says why, and no motion follows.
+/// not come to the end of a motion, the motion is a Fault that says why, and no motion follows; one that is cancelled
+/// is Cancelled.
 class DryRun final : public plant::Plant {
  public:
   /// Neither is owned.

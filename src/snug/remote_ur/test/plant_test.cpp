@@ -523,6 +523,18 @@ TEST(RemoteUr, InADryRunARobotMakesEachMotionBeforeTheSimulatedPlant) {
   EXPECT_LT(held.pressure_gauge, -1e4) << "the simulated plant's";
   EXPECT_EQ(held, both.read());
   EXPECT_NEAR(robot.plant->read().X_WE.p.z(), held.X_WE.p.z() + kDryHeight, 2e-3);
+  both.start({first_box(), {box().over(0.4, "home", true)}, {}, {}});
+  for (int i = 0; i < 20; ++i) (void)both.advance();
+  both.cancel();
+  std::vector<plant::Event> events;
+  while (both.is_moving()) {
+    for (const plant::Event& event : both.advance()) events.push_back(event);
+  }
+  ASSERT_EQ(events.size(), 1U) << "no fault";
+  const auto* cancelled = plant::get<plant::MotionEnded>(events.front());
+  ASSERT_NE(cancelled, nullptr);
+  EXPECT_EQ(cancelled->feedback.end.reason, EndReason::Cancelled);
+  EXPECT_EQ(cancelled->feedback.X_WE, held.X_WE) << "the simulated plant did not move";
   robot.link->controller().stop_program();
   for (int i = 0; i < 50; ++i) robot.link->controller().step();
   const plant::Feedback stopped = plant::run(both, {first_box(), {box().over(0.4, "home", true)}, {}, {}});
