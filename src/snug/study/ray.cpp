@@ -13,6 +13,7 @@ constexpr const char* kRayProgram = R"(
 import ctypes
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -41,11 +42,19 @@ def fill(chunks):
     return chunks, done.returncode, done.stderr[-4000:]
 
 
+def expect_answer():
+    """Ray itself waits for minutes where nobody listens."""
+    host, colon, port = ADDRESS.removeprefix("ray://").rpartition(":")
+    if colon and port.isdigit():
+        socket.create_connection((host.strip("[]"), int(port)), timeout=10.0).close()
+
+
 def main():
     try:
+        expect_answer()
         ray.init(address=None if ADDRESS == "local" else ADDRESS, log_to_driver=False, include_dashboard=False
                  if ADDRESS == "local" else None)
-    except (ConnectionError, ValueError, RuntimeError) as error:
+    except (OSError, ValueError, RuntimeError) as error:
         print(f"snug: error: --ray {ADDRESS}: {str(error).splitlines()[0]}; expected the address of a Ray cluster, or "
               "local", file=sys.stderr)
         return 2

@@ -103,6 +103,7 @@ PlaceTask make_place_task(const model::Scenario& scenario, const PlaceOptions& o
                     model::yaw_about_vertical(container->X_WT.R)};
   task.heights = layer_heights(*container, items);
   for (double& height : task.heights) height += scenario.cup.hold_length;
+  task.heights.back() += scenario.skills.travel.clearance;
   task.stand.setZero();
   double least = items.front().size.x();
   for (const StandingItem& item : items) {

@@ -30,15 +30,16 @@ struct PlaceTask {
   Pose X_WT;                            ///< of the container
   Footprint container;                  ///< outside
   std::vector<Eigen::Vector2d> points;  ///< m, in W: of the container, where boxes can stand
-  std::array<double, 4> heights{};      ///< m, of E over the container's floor: layer_heights
-  std::vector<Vector3> picks_A;         ///< m, middle of the upper face of each item, in the aligner
-  Eigen::Vector2d stand;                ///< m, what boxes take up from the aligner's corner
-  double lowest_pick = 0.0;             ///< m, of E over the aligner's support
-  double highest_pick = 0.0;            ///< m, the same, from where the highest box is approached
-  double pick_length = 0.0;             ///< m, E over the lip that picks
-  double tool_yaw = 0.0;                ///< rad, at its start
-  std::vector<Footprint> carrying;      ///< faces on which boxes can stand at the aligner
-  std::vector<Footprint> blocking;      ///< static bodies that rise above them, other than those that move
+  std::array<double, 4>
+      heights{};  ///< m, of E over the container's floor: layer_heights, the last as far over the rim as motions keep
+  std::vector<Vector3> picks_A;     ///< m, middle of the upper face of each item, in the aligner
+  Eigen::Vector2d stand;            ///< m, what boxes take up from the aligner's corner
+  double lowest_pick = 0.0;         ///< m, of E over the aligner's support
+  double highest_pick = 0.0;        ///< m, the same, from where the highest box is approached
+  double pick_length = 0.0;         ///< m, E over the lip that picks
+  double tool_yaw = 0.0;            ///< rad, at its start
+  std::vector<Footprint> carrying;  ///< faces on which boxes can stand at the aligner
+  std::vector<Footprint> blocking;  ///< static bodies that rise above them, other than those that move
 
   [[nodiscard]] Footprint outline_of(const CornerPlace& corner) const;
   /// Middle of all picks, m.
