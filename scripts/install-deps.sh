@@ -16,7 +16,7 @@ program="make cmake ninja-build g++ pkg-config ccache python3
 node="nodejs npm"                   # unless there is a node of 18 or newer already
 python="pybind11-dev python3-dev python3-numpy python3-venv"  # make python
 # make test; chromium also draws `snug picture`
-test="$python python3-pytest mypy python3-matplotlib hdf5-tools libbenchmark-dev liborocos-kdl-dev libkdl-parser-dev chromium man-db
+test="$python python3-pytest mypy python3-matplotlib hdf5-tools libbenchmark-dev liborocos-kdl-dev libkdl-parser-dev liburdfdom-headers-dev chromium man-db
   python3-zmq python3-protobuf"
 cluster="slurm-wlm munge"           # the test of studies as jobs of a cluster, which is skipped without
 lint="clang clang-format clang-tidy" # make check, fix, tidy, clang

@@ -151,7 +151,8 @@ TEST(Cast, DoesNotSeeWhatIsBehindOrAroundIt) {
   add_box(scene, "behind", {Matrix3::Identity(), Vector3(0, 0, -1.0)}, Vector3(0.5, 0.5, 0.5));
   add_box(scene, "around", Pose{}, Vector3(0.1, 0.1, 0.1));
   add_body(scene, "round", Pose{}, {{geometry::Capsule{0.1, 0.1}, {}}, {geometry::Cylinder{0.1, 0.1}, {}}});
-  for (const float w : cast(scene, small_view()).inverse_depth.values()) EXPECT_EQ(w, 0.0F);
+  const auto frame = cast(scene, small_view());  // lives as long as the loop over a part of it
+  for (const float w : frame.inverse_depth.values()) EXPECT_EQ(w, 0.0F);
 }
 
 }  // namespace

@@ -34,9 +34,9 @@ Form form_of(const record::Recording& recording, const Selection& selection = {}
   return decode_form(encode_recording(reader, "run.h5", selection), "run.h5");
 }
 
-const Channel& channel(const Form& form, const std::string& name) {
-  const Channel* found = find_channel(form, name);
-  if (found == nullptr) throw std::runtime_error("no channel " + name);
+const Channel& channel(const Form& form, std::string_view name) {
+  const Channel* found = find_channel(form, std::string(name));
+  if (found == nullptr) throw std::runtime_error("no channel " + std::string(name));
   return *found;
 }
 

@@ -15,7 +15,7 @@ namespace {
 using record::BodyTrack;
 using record::is_tracked;
 
-const BodyTrack& track(const record::ArchiveRecording& recording, const std::string& name) {
+const BodyTrack& track(const record::ArchiveRecording& recording, std::string_view name) {
   for (const BodyTrack& body : recording.motion_capture.bodies)
     if (body.name == name) return body;
   ADD_FAILURE() << "no " << name;
