@@ -23,8 +23,8 @@ RAY = Path(sys.executable).with_name("ray")
 NET = "10.213.77"
 PORT = 6391
 ENVIRONMENT = {**os.environ, "SNUG_PYTHON": sys.executable, "RAY_DISABLE_IMPORT_WARNING": "1", "RAY_USAGE_STATS_ENABLED": "0", "RAY_AUTH_MODE": "disabled",
-               "RAY_health_check_period_ms": "500", "RAY_health_check_timeout_ms": "1000", "RAY_health_check_failure_threshold": "2",
-               "RAY_health_check_initial_delay_ms": "1000"}
+               "RAY_health_check_period_ms": "1000", "RAY_health_check_timeout_ms": "5000", "RAY_health_check_failure_threshold": "2",
+               "RAY_health_check_initial_delay_ms": "5000"}
 
 
 def run(*words, code=0, **more):
@@ -66,14 +66,21 @@ class Cluster:
             run("ip", "-n", name, "link", "set", device, "up")
         words = ["--head", f"--port={PORT}", "--num-cpus=0", "--include-dashboard=false"] if number == 2 else [
             f"--address={NET}.2:{PORT}", "--num-cpus=2"]
-        log = open(self.folder / f"{number}.log", "w", encoding="utf-8")
-        node = subprocess.Popen(["ip", "netns", "exec", name, RAY, "start", *words, f"--node-ip-address={NET}.{number}", "--block",
-                                 "--disable-usage-stats", "--object-store-memory=100000000",
-                                 *([f"--temp-dir={self.folder}/r"] if number == 2 else [])],
-                                stdout=log, stderr=log, env=ENVIRONMENT, start_new_session=True)
+        with open(self.folder / f"{number}.log", "w", encoding="utf-8") as log:
+            node = subprocess.Popen(["ip", "netns", "exec", name, RAY, "start", *words, f"--node-ip-address={NET}.{number}", "--block",
+                                     "--disable-usage-stats", "--object-store-memory=100000000",
+                                     *([f"--temp-dir={self.folder}/r"] if number == 2 else [])],
+                                    stdout=log, stderr=log, env=ENVIRONMENT, start_new_session=True)
         self.nodes.append((name, node))
         if number == 2:
-            time.sleep(6.0)
+            self.wait_until(lambda: "ray status" in (self.folder / "2.log").read_text())
+
+    @staticmethod
+    def wait_until(is_true, seconds=90.0):
+        end = time.monotonic() + seconds
+        while not is_true():
+            assert time.monotonic() < end, "a node of the cluster does not start"
+            time.sleep(0.1)
 
     def inside(self, *words, **more):
         """Runs where the head is."""
@@ -128,7 +135,7 @@ class ANodeIsKilled(unittest.TestCase):
         self.assertEqual((self.folder / "there.csv").read_bytes(), (self.folder / "here.csv").read_bytes())
 
         self.cluster.add_node(5)
-        time.sleep(6.0)
+        self.cluster.wait_until(lambda: "will now block" in (self.cluster.folder / "5.log").read_text())
         program = self.folder / "environment.py"
         program.write_text(ENVIRONMENT_PROGRAM)
         result = self.cluster.inside(sys.executable, program, self.cluster.address,
@@ -142,7 +149,7 @@ import os, signal, sys
 import numpy as np
 import snug, snug.env
 scenario = snug.load_scenario("box-demonstrator")
-there = snug.env.RayVectorPacking(scenario, 6, workers=4, sequence=None, address=sys.argv[1])
+there = snug.env.RayVectorPacking(scenario, 6, workers=2, sequence=None, address=sys.argv[1])
 here = snug.env.VectorPacking(scenario, 6, sequence=None)
 a, _ = there.reset(seed=7)
 b, _ = here.reset(seed=7)

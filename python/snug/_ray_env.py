@@ -51,7 +51,7 @@ class RayVectorPacking(spaces.VectorEnv):
             raise refused("count", str(count), f"as many scenarios ({len(scenarios)}) and parameters ({len(parameters)})")
         self._shares = np.array_split(np.arange(count), int(workers))
         threads = int(words.get("threads", 1))
-        actor = ray.remote(num_cpus=threads)(_Part)
+        actor = ray.remote(num_cpus=threads, scheduling_strategy="SPREAD")(_Part)
         self._make = []
         for share in self._shares:
             mine = [scenarios[i] for i in share]

@@ -39,7 +39,7 @@ def fill(chunks):
         if done.returncode != 1:
             break
         time.sleep(min(30.0, 0.5 * 2.0 ** attempt))
-    return chunks, done.returncode, done.stderr[-4000:]
+    return done.returncode, done.stderr[-4000:]
 
 
 def expect_answer():
@@ -58,13 +58,22 @@ def main():
         print(f"snug: error: --ray {ADDRESS}: {str(error).splitlines()[0]}; expected the address of a Ray cluster, or "
               "local", file=sys.stderr)
         return 2
-    waiting, worst = [fill.remote(chunks) for chunks in CHUNKS], 0
+    waiting, lost, worst = {fill.remote(chunks): chunks for chunks in CHUNKS}, 0, 0
     while waiting:
-        ready, waiting = ray.wait(waiting)
-        for chunks, code, words in ray.get(ready):
-            if code:
-                print(f"chunks {chunks}: {words.strip()}", file=sys.stderr)
-            worst = max(worst, code)
+        ready, _ = ray.wait(list(waiting))
+        chunks = waiting.pop(ready[0])
+        try:
+            code, words = ray.get(ready[0])
+        except ray.exceptions.RayError as error:  # of a lost node, where Ray itself does not begin the task again
+            lost += 1
+            if lost > MOST_LOST:
+                raise
+            print(f"chunks {chunks}: begun again: {type(error).__name__}", file=sys.stderr)
+            waiting[fill.remote(chunks)] = chunks
+            continue
+        if code:
+            print(f"chunks {chunks}: {words.strip()}", file=sys.stderr)
+        worst = max(worst, code)
         if sys.stderr.isatty():
             print(f"\r{len(CHUNKS) - len(waiting)} of {len(CHUNKS)} tasks", end="", file=sys.stderr)
     return worst
@@ -85,7 +94,7 @@ std::string ray_program(const Study& study, const Folder& folder, const ArrayPla
       program, "study", file, "--dir", std::filesystem::absolute(folder.path()).string(), "--threads", "1"};
   return fmt::format(
              "# Study {}: hands its chunks to a Ray cluster. Rows that are done are not done again.\n"
-             "ADDRESS = {}\nFOLDER = {}\nCOMMAND = {}\nCHUNKS = [{}]\nATTEMPTS = 8\n",
+             "ADDRESS = {}\nFOLDER = {}\nCOMMAND = {}\nCHUNKS = [{}]\nATTEMPTS = 8\nMOST_LOST = 1000\n",
              literal(study.name), literal(address), literal(std::filesystem::current_path().string()), literal(command),
              ranges) +
          kRayProgram;
