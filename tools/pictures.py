@@ -3,7 +3,7 @@
 
   pictures.py [NAME ...]     all of them, some minutes; needs Debian's chromium
 
-Names: report, kitchen, validation, packed-sequence-2."""
+Names: report, kitchen, validation, packed-sequence-2, places."""
 import argparse
 import os
 import subprocess
@@ -67,7 +67,14 @@ def packed_sequence_2(folder, picture):
     snug(folder, "picture", recording(folder, "second"), "--camera", "top", "--size", "700x520", "-o", picture)
 
 
-PICTURES = {"report": report, "kitchen": kitchen, "validation": validation, "packed-sequence-2": packed_sequence_2}
+def places(folder, picture):
+    arm = ROOT / "scenarios" / "robots" / "ur5e.urdf"
+    snug(folder, "init", "cell", "cell")
+    snug(folder, "cell", "place", "cell/cell.yaml", "--arm", arm, "-o", "cell/placed.yaml", "--page", "places.html")
+    photograph(f"file://{folder}/places.html", picture, "1180,1100")
+
+
+PICTURES = {"report": report, "kitchen": kitchen, "validation": validation, "packed-sequence-2": packed_sequence_2, "places": places}
 
 
 def main():

@@ -141,7 +141,8 @@ class Scale {
         for (int i = 0; i < kDirections; ++i) {
           const double angle = task_.container.yaw + 2.0 * kHalfTurn * i / kDirections;
           const Eigen::Vector2d p = task_.container.middle + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
-          const BasePlace base{{p.x(), p.y(), base_.p_W.z() + kHeightStep * step}, 0.0};
+          const BasePlace base{
+              {rounded(p.x(), kRoundLength), rounded(p.y(), kRoundLength), base_.p_W.z() + kHeightStep * step}, 0.0};
           const auto is_in = [&](const Footprint& other) { return base.outline().is_near(other, 0.0); };
           const bool is_free =
               !base.outline().is_near(task_.container, kFreeBetween) && !std::ranges::any_of(task_.blocking, is_in);
