@@ -64,6 +64,47 @@ class Arms(unittest.TestCase):
             self.assertEqual((result["executed_boxes"], result["boxes_lost"]), (1, 0), result["stopped"])
 
 
+class Places(unittest.TestCase):
+    def snug(self, *words, code=0):
+        done = subprocess.run([SNUG, *map(str, words)], cwd=self.folder.name, text=True, capture_output=True, timeout=600, check=False)
+        self.assertEqual(done.returncode, code, done.stdout[-2000:] + done.stderr[-2000:])
+        return done
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        path = Path(self.folder.name)
+        text = re.sub(r"      - {parcel: (?!L1).*\n", "", CELL.read_text())
+        (path / "cell.yaml").write_text(text)
+        # As a maker publishes it: without what is behind the flange.
+        arm = (ROOT / "scenarios" / "robots" / "ur5e.urdf").read_text()
+        for name in ("ft_sensor", "gripper", "E", "suction_cup"):
+            arm = re.sub(rf'<link name="{name}"(/>|.*?</link>)', "", arm, flags=re.DOTALL)
+            arm = re.sub(rf'<joint(?:(?!</joint>).)*<child link="{name}"/>.*?</joint>', "", arm, flags=re.DOTALL)
+        (path / "arm.urdf").write_text(arm)
+
+    def test_an_arm_without_gripper_is_placed_and_packs(self):
+        self.snug("cell", "place", "cell.yaml", "--arm", "arm.urdf", "--tool-link", "tool0", "-o", "placed.yaml", "--page", "places.html")
+        placed = (Path(self.folder.name) / "placed.yaml").read_text()
+        self.assertIn("tool_pose: {position: [0.0, 0.0, 0.290]}", placed)
+        self.assertIn("# What is packed into", placed)
+        self.assertIn("<svg", (Path(self.folder.name) / "places.html").read_text())
+        search = json.loads(self.snug("cell", "place", "placed.yaml", "--json").stdout)
+        self.assertEqual(search["before"]["reached"], search["asked"])
+        words = ("--sequence", "first", "--samples", "0", "--decision-time", "0.05", "--json")
+        self.assertEqual(json.loads(self.snug("pack", "placed.yaml", *words).stdout)["executed_boxes"], 1)
+
+    def test_what_cannot_be_is_refused_by_name(self):
+        (Path(self.folder.name) / "other").mkdir()
+        for words, name in ((("--tool-link", "tool0"), "--tool-link"), (("--arm", "arm.urdf", "--tool-link", "tool1"), "tool0"),
+                            (("--arm", "none.urdf"), "none.urdf"), (("--arm", "arm.urdf", "--with", "bensh"), "bench"),
+                            (("--arm", "arm.urdf", "-o", "other/placed.yaml"), "in the folder of"), (("--arm", "arm.urdf", "-o", "cell.yaml"), "-o"),
+                            ((), "robot"), (("--keep", "all"), "aligner")):
+            said = self.snug("cell", "place", "cell.yaml", *words, code=2).stderr
+            self.assertIn(name, said)
+        self.assertFalse((Path(self.folder.name) / "other" / "placed.yaml").exists())
+
+
 # Of eight makers; a file is found by its name, wherever it is in the folder.
 MAKERS = {"UR10e": "universalUR10e.urdf", "UR5": "universalUR5.urdf", "KUKA KR 10 R1420": "kr10r1420.urdf", "ABB IRB 1600": "irb1600_6_12.urdf",
           "ABB IRB 2600": "irb2600_12_165.urdf", "FANUC LR Mate 200iD": "lrmate200id.urdf", "FANUC M-10iA": "m10ia.urdf",
