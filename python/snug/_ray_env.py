@@ -1,6 +1,7 @@
 """Many containers at once, on the nodes of a Ray cluster, as a vector environment of Gymnasium."""
 from __future__ import annotations
 
+import importlib
 from typing import Any, Dict, List, Mapping, Optional, Tuple
 
 import numpy as np
@@ -38,7 +39,7 @@ class RayVectorPacking(spaces.VectorEnv):
     """
 
     def __init__(self, scenario: Any, count: int, *, workers: int = 2, address: Optional[str] = None, **words: Any):
-        import ray
+        ray = importlib.import_module("ray")
         if not 1 <= int(workers) <= count:
             raise refused("workers", str(workers), f"1 to {count}, as many as there are environments")
         self._ray = ray
@@ -88,12 +89,11 @@ class RayVectorPacking(spaces.VectorEnv):
             raise refused("seed", f"{len(seeds)} of them", f"one for each of {self.num_envs}")
         words = []
         for part, share in enumerate(self._shares):
-            own = {"seed": [seeds[i] for i in share], "options": None if options is None else dict(options)}
-            if mask is not None:
-                own["options"]["reset_mask"] = np.asarray(mask)[share]
-            elif all(one is not None for one in own["seed"]):
+            given = [seeds[i] for i in share]
+            if mask is None and all(one is not None for one in given):
                 self._asked[part] = []  # nothing of before has an influence any more
-            words.append(own)
+            own = {} if mask is None else {"reset_mask": np.asarray(mask)[share]}
+            words.append({"seed": given, "options": None if options is None else {**options, **own}})
         observations = [one for one, _ in self._ask("reset", [()] * len(words), words)]
         self._has_ended &= ~(np.ones(self.num_envs, bool) if mask is None else np.asarray(mask, bool))
         return self._joined(observations), {}

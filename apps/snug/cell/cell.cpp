@@ -89,9 +89,9 @@ the reach of the arm alone; the best dozen are looked at pose by pose, with all 
 best: base, aligner, start and posture are changed, comments and everything else stay. Container and bodies stay where
 they are, but for those --with names. Exit code 1: no place reaches everything.
 Examples:
-  snug cell place ur.yaml -o placed.yaml --page placed.html
-  snug cell place ur.yaml --with plinth --keep height --json
-  snug cell place cell.yaml --arm lrmate200id.urdf --tool-link tool0 -o lrmate.yaml
+  snug cell place scenarios/init/ur.yaml --with plinth --page places.html
+  snug cell place scenarios/init/ur.yaml --keep height --json
+  snug cell place scenarios/init/cell.yaml --arm scenarios/robots/ur5e.urdf --tool-link E --page places.html
 With --arm the cell gets another robot first: the URDF as its maker publishes it, the gripper of the scenario on the link.)";
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -135,6 +136,14 @@ std::string quoted(const std::string& word) {
     text += c;
   }
   return text + "\"";
+}
+
+/// A path as YAML: in quotes where it is more than letters, digits, `.`, `/`, `_` and `-`.
+std::string path_word(const std::string& path) {
+  const bool is_plain = std::ranges::all_of(path, [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '/' || c == '_' || c == '-';
+  });
+  return is_plain && !path.starts_with('-') ? path : quoted(path);
 }
 
 /// m, from where a gripper is mounted to E: how far its rod goes back.
@@ -272,9 +281,9 @@ std::string put_arm(const std::string& text, const std::string& name, const std:
     frames += fmt::format("  tool_pose: {{position: [0.0, 0.0, {:.3f}]}}\n", length);
   }
   const std::vector<double> posture = choose_posture(arm, scenario);
-  return replace_block(
-      text, name, "robot",
-      fmt::format("robot:\n  urdf: {}\n{}  posture: [{}]\n{}", quoted(urdf), pose, fmt::join(posture, ", "), frames));
+  return replace_block(text, name, "robot",
+                       fmt::format("robot:\n  urdf: {}\n{}  posture: [{}]\n{}", path_word(urdf), pose,
+                                   fmt::join(posture, ", "), frames));
 }
 
 }  // namespace snug::workspace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
@@ -32,91 +33,94 @@ Pose tool_at(const Eigen::Vector2d& axis, double direction, double distance, dou
           {axis.x() + distance * std::cos(direction), axis.y() + distance * std::sin(direction), height}};
 }
 
+/// The second joint goes around the first axis in a circle; what is behind it is no longer than its parts.
+struct ArmLengths {
+  double offset = 0.0;    ///< m, of the second joint from the first axis
+  double shoulder = 0.0;  ///< m, its height over the root link
+  double longest = 0.0;   ///< m, from it to E
+};
+ArmLengths find_lengths(const robot::ArmModel& arm) {
+  const robot::Joint& first = arm.joints.front();
+  const Vector3 p_BS = arm.joints.size() > 1 ? Vector3(first.X_SJ * arm.joints[1].X_SJ.p) : first.X_SJ.p;
+  ArmLengths lengths{(p_BS - first.X_SJ.p).head<2>().norm(), p_BS.z(), arm.X_SE.p.norm()};
+  for (std::size_t i = 2; i < arm.joints.size(); ++i) {
+    lengths.longest += arm.joints[i].X_SJ.p.norm();
+    if (arm.joints[i].kind == robot::JointKind::Prismatic)
+      lengths.longest += std::max(std::abs(arm.joints[i].lower), std::abs(arm.joints[i].upper));
+  }
+  return lengths;
+}
+
+/// rad, how far the first joint stands from `mid` where the tool is there, the nearest branch; none where no branch
+/// passes all tests.
+std::optional<double> turn_at(const PoseReachability& reach, const Pose& X_BE, double mid) {
+  std::optional<double> nearest;
+  for (const std::vector<double>& q : reach.find_stands(X_BE)) {
+    const double turn = std::remainder(q.front() - mid, 2.0 * std::numbers::pi);
+    if (!nearest || std::abs(turn) < std::abs(*nearest)) nearest = turn;
+  }
+  return nearest;
+}
+
 }  // namespace
 
-ReachProfile::ReachProfile(const model::Scenario& scenario, double lowest, double highest, int threads)
-    : lowest_(lowest) {
+ReachProfile::ReachProfile(const model::Scenario& scenario, double lowest, double highest, int threads) {
   const model::Scenario alone = robot_alone(scenario);
   const robot::ArmModel arm = robot::load_arm(alone);
   const robot::Joint& first = arm.joints.front();
-  const Vector3 axis = first.X_SJ.R * first.axis;
-  if (first.kind != robot::JointKind::Revolute || std::abs(axis.z()) < 1.0 - 1e-6)
+  const double up = (first.X_SJ.R * first.axis).z();
+  if (first.kind != robot::JointKind::Revolute || std::abs(up) < 1.0 - 1e-6)
     throw InputError(scenario.source_name, "robot.urdf", "first joint '" + first.name + "'",
                      "one that turns about the vertical; other robots are placed with snug check --reach");
   p_BA_ = first.X_SJ.p.head<2>();
-
-  // The second joint turns in a circle about the axis; what is behind it is no longer than its parts.
-  double longest = arm.X_SE.p.norm();
-  for (std::size_t i = 2; i < arm.joints.size(); ++i) {
-    longest += arm.joints[i].X_SJ.p.norm();
-    if (arm.joints[i].kind == robot::JointKind::Prismatic)
-      longest += std::max(std::abs(arm.joints[i].lower), std::abs(arm.joints[i].upper));
-  }
-  const Vector3 p_BS = arm.joints.size() > 1 ? Vector3(first.X_SJ * arm.joints[1].X_SJ.p) : first.X_SJ.p;
-  const double offset = (p_BS.head<2>() - p_BA_).norm();
-  step_ = (offset + longest) / kStepsOfReach;
-  columns_ = kStepsOfReach + 2;
-  rows_ = static_cast<int>(std::ceil((highest - lowest) / step_)) + 1;
-
-  const PoseReachability reach(alone);
   const bool has_ends = std::isfinite(first.lower) && std::isfinite(first.upper);
   const double mid = has_ends ? 0.5 * (first.lower + first.upper) : 0.0;
   half_turn_ = has_ends ? 0.5 * (first.upper - first.lower) : std::numeric_limits<double>::infinity();
 
-  // Which way the arm points at the middle of its first joint: by any pose that it reaches.
-  double direction = 0.0;
-  std::vector<double> flags(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_), 0.0);
+  const ArmLengths lengths = find_lengths(arm);
+  step_ = (lengths.offset + lengths.longest) / kStepsOfReach;
+  columns_ = kStepsOfReach + 2;
+  lowest_ = std::max(lowest, lengths.shoulder - lengths.longest);
+  rows_ = 2 + static_cast<int>(std::max(0.0, std::min(highest, lengths.shoulder + lengths.longest) - lowest_) / step_);
+
+  const PoseReachability reach(alone);
+  std::vector<char> flags(static_cast<std::size_t>(rows_ * columns_));
+  const auto pose_of = [&](int i) {
+    return tool_at(p_BA_, middle_, step_ * (i % columns_), lowest_ + step_ * (i / columns_));
+  };
   const auto look_at_all = [&] {
     parallel_for(static_cast<int>(flags.size()), threads, [&](int i, int) {
-      const double distance = step_ * (i % columns_), height = lowest_ + step_ * (i / columns_);
-      const double from_shoulder = std::hypot(std::max(0.0, distance - offset), height - p_BS.z());
-      flags[static_cast<std::size_t>(i)] =
-          from_shoulder <= longest &&
-                  reach.look(tool_at(p_BA_, direction, distance, height)).verdict == ReachVerdict::Reached
-              ? 1.0
-              : 0.0;
+      const Pose X_BE = pose_of(i);
+      const double beside = std::max(0.0, step_ * (i % columns_) - lengths.offset);
+      const bool can_be = std::hypot(beside, X_BE.p.z() - lengths.shoulder) <= lengths.longest;
+      flags[static_cast<std::size_t>(i)] = can_be && reach.look(X_BE).verdict == ReachVerdict::Reached ? 1 : 0;
     });
   };
   look_at_all();
-  const auto some = [&] {  // the reached pose in the middle of all
-    std::vector<int> reached;
-    for (std::size_t i = 0; i < flags.size(); ++i)
-      if (flags[i] > 0.0) reached.push_back(static_cast<int>(i));
-    return reached.empty() ? -1 : reached[reached.size() / 2];
-  }();
-  if (some >= 0) {
-    const Pose at = tool_at(p_BA_, direction, step_ * (some % columns_), lowest_ + step_ * (some / columns_));
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const std::vector<double>& q : reach.find_stands(at)) {
-      const double turn = std::remainder(q.front() - mid, 2.0 * std::numbers::pi);
-      if (std::abs(turn) >= nearest) continue;
-      nearest = std::abs(turn);
-      middle_ = -turn * (axis.z() > 0.0 ? 1.0 : -1.0);
-    }
-    direction = middle_;
-    if (nearest > 0.5) look_at_all();  // the first look was near the end of the joint
-  }
+  // Which way the arm points at the middle of its first joint: by the pose in the middle of those that it reaches.
+  std::vector<int> reached;
+  for (int i = 0; i < rows_ * columns_; ++i)
+    if (flags[static_cast<std::size_t>(i)] != 0) reached.push_back(i);
+  const std::optional<double> turn =
+      reached.empty() ? std::nullopt : turn_at(reach, pose_of(reached[reached.size() / 2]), mid);
+  constexpr double kNearEnd = 0.5;  // rad from the middle: the first look may have been at the end of the joint
+  if (turn) middle_ = up > 0.0 ? -*turn : *turn;
+  if (turn && std::abs(*turn) > kNearEnd) look_at_all();
+  measure_depths(flags);
+}
 
-  // How deep each point is within what is reached: the nearest point that is not, a step of which counts half.
+/// The nearest point that is not as this one is; a step between the two counts half.
+void ReachProfile::measure_depths(const std::vector<char>& flags) {
   depth_.assign(flags.size(), 0.0);
-  for (int row = 0; row < rows_; ++row) {
-    for (int column = 0; column < columns_; ++column) {
-      const std::size_t at =
-          static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
-      const bool is_reached = flags[at] > 0.0;
-      if (is_reached) reach_ = std::max(reach_, step_ * column);
-      double nearest = std::numeric_limits<double>::infinity();
-      for (int r = 0; r < rows_; ++r) {
-        for (int c = 0; c < columns_; ++c) {
-          const bool other =
-              flags[static_cast<std::size_t>(r) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c)] >
-              0.0;
-          if (other != is_reached) nearest = std::min(nearest, std::hypot(r - row, c - column));
-        }
-      }
-      const double depth = std::isfinite(nearest) ? step_ * (nearest - 0.5) : step_ * columns_;
-      depth_[at] = is_reached ? depth : -depth;
+  for (int i = 0; i < rows_ * columns_; ++i) {
+    const bool is_reached = flags[static_cast<std::size_t>(i)] != 0;
+    if (is_reached) reach_ = std::max(reach_, step_ * (i % columns_));
+    double nearest = columns_ + 0.5;
+    for (int k = 0; k < rows_ * columns_; ++k) {
+      if ((flags[static_cast<std::size_t>(k)] != 0) == is_reached) continue;
+      nearest = std::min(nearest, std::hypot(k / columns_ - i / columns_, k % columns_ - i % columns_));
     }
+    depth_[static_cast<std::size_t>(i)] = (is_reached ? step_ : -step_) * (nearest - 0.5);
   }
 }
 

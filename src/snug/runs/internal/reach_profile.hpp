@@ -27,9 +27,9 @@ class ReachProfile {
   [[nodiscard]] double half_turn() const { return half_turn_; }
 
  private:
+  void measure_depths(const std::vector<char>& flags);
   [[nodiscard]] double node(int column, int row) const {
-    return depth_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-                  static_cast<std::size_t>(column)];
+    return depth_[static_cast<std::size_t>(row * columns_ + column)];
   }
 
   Eigen::Vector2d p_BA_ = Eigen::Vector2d::Zero();
