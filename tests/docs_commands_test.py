@@ -25,8 +25,8 @@ WAIT = 3600.0 if SNUG_LONG else LONG
 LONG_COMMANDS = re.compile(r"snug (bench|view|ui|compare|study examples|identify (damping|scene .*--local|stiffness .*(21|errors))|picture .*--video|simulate .*--monte-carlo|"
                            r"pack .*--monte-carlo|pack (?!.*(small\.csv|kitchen\.h5|my-cell)))")
 # Not commands of snug: shells, other programs, and places of the reader's own machine.
-# `--slurm` submits jobs to a scheduler, which a test of studies has of its own; the rest is not of this program.
-LEFT_OUT = re.compile(r"^(make|cmake|git|apt|apt-get|sudo|npm|pip|bash|export|cd|ffmpeg|xacro|bench/|scripts/|SNUG|#)|completion|--slurm|\\| man |\.\.\./")
+# `--slurm` and `--ray` hand jobs to clusters, which tests of studies have of their own; the rest is not of this program.
+LEFT_OUT = re.compile(r"^(make|cmake|git|apt|apt-get|sudo|npm|pip|bash|export|cd|ffmpeg|xacro|bench/|scripts/|SNUG|#)|completion|--slurm|--ray|\\| man |\.\.\./")
 PREPARED = ("program.csv", "plan.json", "run.h5", "again.h5", "measured.h5")
 MAY_FAIL = re.compile(r"snug (check|bench|perceive|shake|export .*--format (urscript|ros-trajectory))")  # what they say no to is a result (exit code 1)
 
