@@ -20,6 +20,8 @@ import snug.env
 ROOT = Path(__file__).resolve().parent.parent
 SNUG = os.environ.get("SNUG", str(ROOT / "build" / "snug"))
 RAY = Path(sys.executable).with_name("ray")
+ROWS = int(os.environ.get("SNUG_RAY_ROWS", "480"))
+WAIT = 240 + ROWS // 5  # s
 NET = "10.213.77"
 PORT = 6391
 ENVIRONMENT = {**os.environ, "SNUG_PYTHON": sys.executable, "RAY_DISABLE_IMPORT_WARNING": "1", "RAY_USAGE_STATS_ENABLED": "0", "RAY_AUTH_MODE": "disabled",
@@ -28,7 +30,7 @@ ENVIRONMENT = {**os.environ, "SNUG_PYTHON": sys.executable, "RAY_DISABLE_IMPORT_
 
 
 def run(*words, code=0, **more):
-    done = subprocess.run([str(word) for word in words], text=True, capture_output=True, timeout=300, check=False, env=ENVIRONMENT, **more)
+    done = subprocess.run([str(word) for word in words], text=True, capture_output=True, timeout=WAIT, check=False, env=ENVIRONMENT, **more)
     assert code is None or done.returncode == code, (words, done.returncode, done.stdout[-2000:], done.stderr[-2000:])
     return done
 
@@ -117,9 +119,8 @@ class ANodeIsKilled(unittest.TestCase):
         shutil.rmtree(cls.folder, ignore_errors=True)
 
     def test_a_study_loses_nothing_and_an_environment_goes_on(self):
-        rows = int(os.environ.get("SNUG_RAY_ROWS", "480"))
         study = self.folder / "slide.yaml"
-        study.write_text((ROOT / "scenarios/examples/friction.yaml").read_text() + f"repeat: {rows // 12}\nchunk: 10\n")
+        study.write_text((ROOT / "scenarios/examples/friction.yaml").read_text() + f"repeat: {ROWS // 12}\nchunk: 10\n")
         run(SNUG, "study", study, "--dir", "here", cwd=self.folder)
         run(SNUG, "study", "merge", study, "--dir", "here", "-o", "here.csv", cwd=self.folder)
         words = ["ip", "netns", "exec", self.cluster.nodes[0][0], SNUG, "study", study, "--dir", "there", "--ray", self.cluster.address]
@@ -129,7 +130,7 @@ class ANodeIsKilled(unittest.TestCase):
             while len(list((self.folder / "there").glob("chunk-*"))) < 3 and time.monotonic() < end and driver.poll() is None:
                 time.sleep(0.05)
             self.cluster.kill(2)
-            said = driver.communicate(timeout=240)
+            said = driver.communicate(timeout=WAIT)
         self.assertEqual(driver.returncode, 0, said)
         run(SNUG, "study", "merge", study, "--dir", "there", "-o", "there.csv", cwd=self.folder)
         self.assertEqual((self.folder / "there.csv").read_bytes(), (self.folder / "here.csv").read_bytes())

@@ -95,7 +95,8 @@ TEST(PlanView, ATiltedBoxIsTheHullOfItsCorners) {
   Rng rng = Rng(4).split("plan");
   for (int i = 0; i < 200; ++i) {
     const Quaternion q(rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0));
-    const BoxOutline outline = outline_of("B", Vector3(0.3, 0.2, 0.1), {q.normalized().toRotationMatrix(), {}});
+    const BoxOutline outline =
+        outline_of("B", Vector3(0.3, 0.2, 0.1), {q.normalized().toRotationMatrix(), Vector3::Zero()});
     EXPECT_GE(outline.corners_T.size(), 4u);
     EXPECT_LE(outline.corners_T.size(), 6u) << "a box seen along any direction has at most six corners";
   }

@@ -76,8 +76,10 @@ TEST_F(ApiServerTest, TakesBodiesOfOnePlainLengthOnly) {
     EXPECT_EQ(status(ask(put, mark + plain + "Content-Length: " + length + "\r\n", "aaaaa")), 400) << length;
   EXPECT_EQ(status(ask(put, mark + plain + "Content-Length: 5\r\nContent-Length: 6\r\n", "aaaaaa")), 400);
   EXPECT_EQ(status(ask(put, mark + plain + "Transfer-Encoding: chunked\r\n", "1\r\na\r\n0\r\n\r\n")), 400);
-  // The library leaves an empty header out: there is no body then, and what follows is not read.
-  EXPECT_TRUE(ask(put, mark + plain + "Content-Length: \r\n", "aaaaa").ends_with("PUT /api/1/a "));
+  // The library of Debian 12 leaves an empty header out: there is no body then, and what follows is not read. That of
+  // 13 refuses it.
+  const std::string empty = ask(put, mark + plain + "Content-Length: \r\n", "aaaaa");
+  EXPECT_TRUE(empty.ends_with("PUT /api/1/a ") || status(empty) == 400) << empty;
   EXPECT_EQ(status(ask("DELETE /api/1/a" + token_, mark + plain + "Content-Length: 1\r\n", "a")), 400);
   EXPECT_EQ(status(ask("PATCH /api/1/a" + token_, mark)), 405);
   EXPECT_TRUE(ask("DELETE /api/1/a" + token_, mark).ends_with("DELETE /api/1/a "));

@@ -79,7 +79,8 @@ TEST(PoseCursor, IsLostOutsideAndInGapsThatAreTooLong) {
 
 TEST(PoseCursor, TurnsTheShortWayWhateverTheSignOfTheQuaternion) {
   const std::vector<double> times = {0.0, 1.0};
-  std::vector<PoseSample> poses = {PoseSample(Pose{}), PoseSample(Pose{exp_rotation(Vector3(0.2, 0, 0)), {}})};
+  std::vector<PoseSample> poses = {PoseSample(Pose{}),
+                                   PoseSample(Pose{exp_rotation(Vector3(0.2, 0, 0)), Vector3::Zero()})};
   poses[1].p.setZero();
   for (const double sign : {1.0, -1.0}) {
     poses[1].quat.coeffs() *= sign;
