@@ -24,8 +24,9 @@ ROWS = int(os.environ.get("SNUG_RAY_ROWS", "480"))
 WAIT = 240 + ROWS // 5  # s
 NET = "10.213.77"
 PORT = 6391
+# A node that is killed refuses its checks at once and is lost after five; one that is slow may take its time.
 ENVIRONMENT = {**os.environ, "SNUG_PYTHON": sys.executable, "RAY_DISABLE_IMPORT_WARNING": "1", "RAY_USAGE_STATS_ENABLED": "0", "RAY_AUTH_MODE": "disabled",
-               "RAY_health_check_period_ms": "1000", "RAY_health_check_timeout_ms": "5000", "RAY_health_check_failure_threshold": "2",
+               "RAY_health_check_period_ms": "1000", "RAY_health_check_timeout_ms": "30000", "RAY_health_check_failure_threshold": "5",
                "RAY_health_check_initial_delay_ms": "5000"}
 
 
