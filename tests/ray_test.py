@@ -75,8 +75,8 @@ class Cluster:
                                      *([f"--temp-dir={self.folder}/r"] if number == 2 else [])],
                                     stdout=log, stderr=log, env=ENVIRONMENT, start_new_session=True)
         self.nodes.append((name, node))
-        if number == 2:
-            self.wait_until(lambda: "ray status" in (self.folder / "2.log").read_text())
+        # One after the other: nodes that start at a time on one file system take each other's names of sockets.
+        self.wait_until(lambda: "will now block" in (self.folder / f"{number}.log").read_text())
 
     @staticmethod
     def wait_until(is_true, seconds=90.0):
@@ -137,7 +137,6 @@ class ANodeIsKilled(unittest.TestCase):
         self.assertEqual((self.folder / "there.csv").read_bytes(), (self.folder / "here.csv").read_bytes())
 
         self.cluster.add_node(5)
-        self.cluster.wait_until(lambda: "will now block" in (self.cluster.folder / "5.log").read_text())
         program = self.folder / "environment.py"
         program.write_text(ENVIRONMENT_PROGRAM)
         result = self.cluster.inside(sys.executable, program, self.cluster.address,
