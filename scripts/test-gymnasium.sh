@@ -4,13 +4,6 @@
 set -eu
 build="$(realpath "$1")"
 venv="$build/gymnasium"
-python="${PYTHON:-/usr/bin/python3}"
-if ! "$venv/bin/python" -c 'import gymnasium' 2>/dev/null; then
-  "$python" -m venv --system-site-packages "$venv" &&
-    "$venv/bin/pip" install --quiet --retries 0 --timeout 20 'gymnasium>=1.1' 'numpy<2' || {
-    echo "test-gymnasium.sh: skipped: Gymnasium cannot be installed from PyPI into $venv" >&2
-    exit 77
-  }
-fi
+"$(dirname "$0")/test-venv.sh" "$venv" "gymnasium" "gymnasium>=1.1 numpy<2" --system-site-packages || exit $?
 cd "$(dirname "$0")/../python/tests"
 PYTHONPATH="$build/python" exec "$venv/bin/python" -B -m pytest -q -p no:cacheprovider test_gymnasium.py

@@ -4,15 +4,8 @@
 set -eu
 build="$(realpath "$1")"
 venv="$build/notebooks"
-python="${PYTHON:-/usr/bin/python3}"
 examples="$(realpath "$(dirname "$0")/../examples/python")"
-if ! "$venv/bin/python" -c 'import nbclient, ipykernel' 2>/dev/null; then
-  "$python" -m venv --system-site-packages "$venv" &&
-    "$venv/bin/pip" install --quiet --retries 0 --timeout 30 nbclient ipykernel || {
-    echo "test-notebooks.sh: skipped: nbclient cannot be installed from PyPI into $venv" >&2
-    exit 77
-  }
-fi
+"$(dirname "$0")/test-venv.sh" "$venv" "nbclient ipykernel" "nbclient ipykernel" --system-site-packages || exit $?
 folder="$(mktemp -d)"
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"

@@ -4,12 +4,5 @@
 set -eu
 build="$(realpath "$1")"
 venv="$build/ray"
-python="${PYTHON:-/usr/bin/python3}"
-if ! "$venv/bin/python" -c 'import ray' 2>/dev/null; then
-  "$python" -m venv --system-site-packages "$venv" &&
-    "$venv/bin/pip" install --quiet --retries 0 --timeout 30 'ray>=2.9' || {
-    echo "test-ray.sh: skipped: Ray cannot be installed from PyPI into $venv" >&2
-    exit 77
-  }
-fi
+"$(dirname "$0")/test-venv.sh" "$venv" "ray" "ray>=2.9" --system-site-packages || exit $?
 PYTHONPATH="$build/python" SNUG="$build/snug" exec "$venv/bin/python" -B "$(dirname "$0")/../tests/ray_test.py"

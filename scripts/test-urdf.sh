@@ -11,12 +11,7 @@ if [ -z "$folder" ] || [ ! -d "$folder" ]; then
 fi
 folder="$(realpath "$folder")"
 venv="$build/pinocchio"
-if ! "$venv/bin/python" -c 'import pinocchio' 2>/dev/null; then
-  "$python" -m venv "$venv" && "$venv/bin/pip" install --quiet --retries 0 --timeout 20 pin || {
-    echo "test-urdf.sh: skipped: Pinocchio cannot be installed from PyPI into $venv" >&2
-    exit 77
-  }
-fi
+"$(dirname "$0")/test-venv.sh" "$venv" "pinocchio" "pin" || exit $?
 cd "$(dirname "$0")/../python/tests"
 SNUG_URDF_FOLDER="$folder" SNUG_PINOCCHIO="$venv/bin/python" PYTHONPATH="$build/python" \
   exec "$python" -B -m pytest -q -s -p no:cacheprovider test_urdf.py

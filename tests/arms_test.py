@@ -105,11 +105,11 @@ class Places(unittest.TestCase):
         self.assertFalse((Path(self.folder.name) / "other" / "placed.yaml").exists())
 
 
-# Of eight makers; a file is found by its name, wherever it is in the folder.
+# Of eight makers; a file is found by its name, wherever it is in the folder. Franka's are placed, but do not pack yet (docs/decisions/0114).
 MAKERS = {"UR10e": "universalUR10e.urdf", "UR5": "universalUR5.urdf", "KUKA KR 10 R1420": "kr10r1420.urdf", "ABB IRB 1600": "irb1600_6_12.urdf",
           "ABB IRB 2600": "irb2600_12_165.urdf", "FANUC LR Mate 200iD": "lrmate200id.urdf", "FANUC M-10iA": "m10ia.urdf",
           "Yaskawa MH5": "yaskawaMotomanMH5.urdf", "Staubli TX2-90": "tx2_90.urdf", "Doosan M1013": "m1013.white.urdf", "xArm 7": "xarm7.urdf",
-          "Franka FR3": "fr3.urdf"}
+          "KUKA LBR iiwa 14": "kukaIiwa14.urdf"}
 
 
 def ten_boxes():

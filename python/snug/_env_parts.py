@@ -1,7 +1,7 @@
 """What environments of packing have in common: their spaces, and what their arguments may be."""
 from __future__ import annotations
 
-from typing import Any, Tuple
+from typing import Any, List, Tuple
 
 import numpy as np
 
@@ -52,3 +52,30 @@ def check_options(options: Any, *known: str) -> None:
     for key in options or {}:
         if key not in known:
             raise refused("options", f"'{key}'", f"one of: {', '.join(known)}" if known else "none")
+
+
+def seeds_of(seed: Any, count: int) -> List[Any]:
+    """One for each environment: a number counts up from the first on, a list has its own, None stays None."""
+    if seed is None:
+        return [None] * count
+    seeds = [int(seed) + i for i in range(count)] if np.ndim(seed) == 0 else list(seed)
+    if len(seeds) != count:
+        raise refused("seed", f"{len(seeds)} of them", f"one for each of {count}")
+    return seeds
+
+
+def reset_mask(given: Any, count: int) -> np.ndarray:
+    """Which environments a reset is for: all, unless options name them."""
+    if given is None:
+        return np.ones(count, bool)
+    which = np.asarray(given)
+    if which.shape != (count,) or which.dtype != bool:
+        raise refused("options", f"a reset_mask of {which.dtype}, shape {which.shape}", f"true or false for each of {count}")
+    return which.copy()
+
+
+def refuse_ended(has_ended: np.ndarray) -> None:
+    """For a step where nothing begins anew by itself."""
+    if has_ended.any():
+        raise refused("actions", f"environments {np.flatnonzero(has_ended).tolist()} that have ended",
+                      'reset(options={"reset_mask": ...}) first')

@@ -7,6 +7,7 @@ from typing import Any, Dict, List, Mapping, Optional, Tuple
 import numpy as np
 
 from . import _core, spaces
+from ._env_parts import check_options, refuse_ended, reset_mask, seeds_of
 from ._errors import refused
 from ._vector_env import Observation, VectorPacking
 
@@ -28,7 +29,8 @@ class _Part:
 class RayVectorPacking(spaces.VectorEnv):
     """As VectorPacking, its environments on `workers` actors of a Ray cluster: the same seeds and actions give the same
     episodes, whatever node they run on. An actor whose node is lost begins again on another: what it was asked since
-    its last reset of all is asked again, so nothing is lost.
+    the last reset of all its environments with seeds is asked again, so nothing is lost. These calls are kept until
+    then: reset with new seeds now and then.
 
     Args:
         scenario, count, and all others: as of VectorPacking; `threads` of each actor.
@@ -70,32 +72,26 @@ class RayVectorPacking(spaces.VectorEnv):
         self.action_space = spaces.batch_space(self.single_action_space, count)
         self.render_mode = None
         self._waits = str(getattr(words.get("autoreset_mode"), "name", words.get("autoreset_mode"))).lower() == "disabled"
-        self._has_ended = np.zeros(count, bool)
+        self._has_ended, self._has_seed = np.zeros(count, bool), np.zeros(count, bool)
 
     def reset(self, *, seed: Any = None,
               options: Optional[Mapping[str, Any]] = None) -> Tuple[Observation, Dict[str, Any]]:
-        """As VectorPacking.reset."""
-        if seed is None:
-            seeds: List[Any] = [None] * self.num_envs
-        elif np.ndim(seed) == 0:
-            seeds = [int(seed) + i for i in range(self.num_envs)]
-        else:
-            seeds = list(seed)
-        mask = (options or {}).get("reset_mask")
-        if mask is not None and np.asarray(mask).shape != (self.num_envs,):
-            raise refused("options", f"a reset_mask of shape {np.asarray(mask).shape}",
-                          f"true or false for each of {self.num_envs}")
-        if len(seeds) != self.num_envs:
-            raise refused("seed", f"{len(seeds)} of them", f"one for each of {self.num_envs}")
+        """As VectorPacking.reset. Environments that never had a seed are given one, by chance."""
+        check_options(options, "reset_mask")
+        which = reset_mask((options or {}).get("reset_mask"), self.num_envs)
+        seeds = seeds_of(seed, self.num_envs)
+        for i in np.flatnonzero(which):
+            if seeds[i] is None and not self._has_seed[i]:  # what an actor draws by itself could not be drawn again
+                seeds[i] = int(np.random.default_rng().integers(2**63))
+        self._has_seed |= which
         words = []
         for part, share in enumerate(self._shares):
             given = [seeds[i] for i in share]
-            if mask is None and all(one is not None for one in given):
+            if which[share].all() and all(one is not None for one in given):
                 self._asked[part] = []  # nothing of before has an influence any more
-            own = {} if mask is None else {"reset_mask": np.asarray(mask)[share]}
-            words.append({"seed": given, "options": None if options is None else {**options, **own}})
+            words.append({"seed": given, "options": {"reset_mask": which[share]}})
         observations = [one for one, _ in self._ask("reset", [()] * len(words), words)]
-        self._has_ended &= ~(np.ones(self.num_envs, bool) if mask is None else np.asarray(mask, bool))
+        self._has_ended &= ~which
         return self._joined(observations), {}
 
     def step(self, actions: Any) -> Tuple[Observation, np.ndarray, np.ndarray, np.ndarray, Dict[str, Any]]:
@@ -103,9 +99,8 @@ class RayVectorPacking(spaces.VectorEnv):
         given = np.asarray(actions)
         if given.shape[:1] != (self.num_envs,):
             raise refused("actions", f"an array of shape {given.shape}", f"one for each of {self.num_envs}")
-        if self._waits and self._has_ended.any():
-            raise refused("actions", f"environments {np.flatnonzero(self._has_ended).tolist()} that have ended",
-                          'reset(options={"reset_mask": ...}) first')
+        if self._waits:
+            refuse_ended(self._has_ended)
         answers = self._ask("step", [(given[share],) for share in self._shares], [{}] * len(self._shares))
         observation = self._joined([one[0] for one in answers])
         reward, terminated, truncated = (np.concatenate([one[i] for one in answers]) for i in (1, 2, 3))

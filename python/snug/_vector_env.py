@@ -6,7 +6,8 @@ from typing import Any, Dict, List, Optional, Tuple
 import numpy as np
 
 from . import _core, spaces
-from ._env_parts import action_space, check_options, choices, container_size, observation_space
+from ._env_parts import (action_space, check_options, choices, container_size, observation_space, refuse_ended, reset_mask,
+                         seeds_of)
 from ._errors import refused
 
 Observation = Dict[str, np.ndarray]
@@ -67,7 +68,7 @@ class VectorPacking(spaces.VectorEnv):
             options: {"reset_mask": (count,) bool}: only these begin anew.
         """
         check_options(options, "reset_mask")
-        which = self._mask((options or {}).get("reset_mask"))
+        which = reset_mask((options or {}).get("reset_mask"), self.num_envs)
         self._seed(seed, which)
         observation = self._core.reset(which.astype(np.uint8), self._draw(which))
         self._has_ended &= ~which
@@ -79,9 +80,8 @@ class VectorPacking(spaces.VectorEnv):
         info has `reason` and `packed_percent` of environments whose episode has just ended, `_reason` and `_packed_percent` tell
         which these are; in mode "same_step" also `final_obs` (an array of their last observations) and `final_info`.
         """
-        if self._mode == "disabled" and self._has_ended.any():
-            raise refused("actions", f"environments {np.flatnonzero(self._has_ended).tolist()} that have ended",
-                          'reset(options={"reset_mask": ...}) first')
+        if self._mode == "disabled":
+            refuse_ended(self._has_ended)
         seeds = self._draw(self._has_ended)
         step = self._core.step_candidates if self._by_candidate else self._core.step_places
         observation, reward, terminated, truncated = step(actions, seeds)
@@ -104,25 +104,9 @@ class VectorPacking(spaces.VectorEnv):
         self._has_ended = np.zeros(self.num_envs, bool)
         return self._core.reset(ended.astype(np.uint8), self._draw(ended))
 
-    def _mask(self, given: Any) -> np.ndarray:
-        if given is None:
-            return np.ones(self.num_envs, bool)
-        which = np.asarray(given)
-        if which.shape != (self.num_envs,) or which.dtype != bool:
-            raise refused("options", f"a reset_mask of {which.dtype}, shape {which.shape}",
-                          f"true or false for each of {self.num_envs}")
-        return which.copy()
-
     def _seed(self, seed: Any, which: np.ndarray) -> None:
         """New random numbers for environments of `which` that are given a seed."""
-        if seed is None:
-            seeds: List[Any] = [None] * self.num_envs
-        elif np.ndim(seed) == 0:
-            seeds = [int(seed) + i for i in range(self.num_envs)]
-        else:
-            seeds = list(seed)
-        if len(seeds) != self.num_envs:
-            raise refused("seed", f"{len(seeds)} of them", f"one for each of {self.num_envs}")
+        seeds = seeds_of(seed, self.num_envs)
         for one in seeds:
             if one is not None and not 0 <= int(one) < 2**64:
                 raise refused("seed", str(one), "whole numbers from 0, below 2^64")

@@ -85,7 +85,7 @@ int run_cell_place(const CellPlaceOptions& options) {
 constexpr const char* kPlaceHelp =
     R"(Looks for places of the robot's base and of the aligner from which the tool, pointing down, reaches what packing needs:
 the container from its floor to over its rim, and the picks, also with the tool turned by a quarter. Places are found by
-the reach of the arm alone; the best dozen are looked at pose by pose, with all that stands in the cell. -o writes the
+the reach of the arm alone; the best, a dozen or more, are looked at pose by pose, with all that stands in the cell. -o writes the
 best: base, aligner, start and posture are changed, comments and everything else stay. Container and bodies stay where
 they are, but for those --with names. Exit code 1: no place reaches everything.
 Examples:

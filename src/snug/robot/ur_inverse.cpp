@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "snug/robot/internal/lines.hpp"
-#include "snug/robot/kinematics.hpp"
 
 namespace snug::robot {
 namespace {
@@ -80,14 +79,9 @@ void add_elbows(const UrGeometry& arm, const WristBranch& b, double slack, Close
 }  // namespace
 
 std::optional<UrGeometry> find_ur_geometry(const ArmModel& arm) {
-  if (arm.joint_count() != 6) return std::nullopt;
-  for (const Joint& joint : arm.joints)
-    if (joint.kind != JointKind::Revolute) return std::nullopt;
-  ArmModel at_root = arm;
-  at_root.X_WB = Pose{};
-  const ArmPose at = forward(at_root, JointVector::Zero(6));
-  std::array<Line, 6> axis;
-  for (std::size_t i = 0; i < 6; ++i) axis[i] = {at.X_WS[i + 1].p, at.axis_W[i]};
+  const std::optional<internal::SixAxes> axes = internal::six_axes(arm);
+  if (!axes) return std::nullopt;
+  const auto& [axis, X_BE] = *axes;
   const bool is_ur = are_square(axis[0], axis[1]) && are_parallel(axis[1], axis[2]) && are_parallel(axis[2], axis[3]) &&
                      are_parallel(axis[1], axis[3]) && are_square(axis[3], axis[4]) && are_square(axis[4], axis[5]);
   if (!is_ur) return std::nullopt;
@@ -121,8 +115,8 @@ std::optional<UrGeometry> find_ur_geometry(const ArmModel& arm) {
   const Vector3 z6 = X_0B.R * axis[5].direction;
   g.z6 = (z6 - g.z5 * g.z5.dot(z6)).normalized();
   g.angle_z6 = std::atan2(g.z6.dot(g.z5.cross(u_0)), g.z6.dot(u_0));
-  g.R_0E = X_0B.R * at.X_WE.R;
-  g.p_E6_E = g.R_0E.transpose() * (p_0end - in_0(at.X_WE.p));
+  g.R_0E = X_0B.R * X_BE.R;
+  g.p_E6_E = g.R_0E.transpose() * (p_0end - in_0(X_BE.p));
   return g;
 }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "snug/robot/internal/lines.hpp"
-#include "snug/robot/kinematics.hpp"
 
 namespace snug::robot {
 namespace {
@@ -69,14 +68,9 @@ bool is_long_enough(const WristGeometry& g) {
 }  // namespace
 
 std::optional<WristGeometry> find_wrist_geometry(const ArmModel& arm) {
-  if (arm.joint_count() != 6) return std::nullopt;
-  for (const Joint& joint : arm.joints)
-    if (joint.kind != JointKind::Revolute) return std::nullopt;
-  ArmModel at_root = arm;
-  at_root.X_WB = Pose{};
-  const ArmPose at = forward(at_root, JointVector::Zero(6));
-  std::array<Line, 6> axis;
-  for (std::size_t i = 0; i < 6; ++i) axis[i] = {at.X_WS[i + 1].p, at.axis_W[i]};
+  const std::optional<internal::SixAxes> axes = internal::six_axes(arm);
+  if (!axes) return std::nullopt;
+  const auto& [axis, X_BE] = *axes;
   if (!internal::are_square(axis[0], axis[1]) || !internal::are_parallel(axis[1], axis[2])) return std::nullopt;
   if (internal::are_parallel(axis[3], axis[4]) || internal::are_parallel(axis[4], axis[5])) return std::nullopt;
   const Vector3 before = internal::nearest_point(axis[4], axis[3]), after = internal::nearest_point(axis[4], axis[5]);
@@ -91,8 +85,8 @@ std::optional<WristGeometry> find_wrist_geometry(const ArmModel& arm) {
   g.axis[2] = g.axis[1] * (g.axis[1].dot(g.axis[2]) > 0.0 ? 1.0 : -1.0);
   for (std::size_t i = 0; i < 3; ++i) g.point[i] = axis[i].point;
   g.wrist = 0.5 * (before + after);
-  g.R_BE = at.X_WE.R;
-  g.p_EC_E = at.X_WE.R.transpose() * (g.wrist - at.X_WE.p);
+  g.R_BE = X_BE.R;
+  g.p_EC_E = X_BE.R.transpose() * (g.wrist - X_BE.p);
   if (!is_long_enough(g)) return std::nullopt;
   return g;
 }

@@ -35,7 +35,6 @@ constexpr int kHeightSteps = 8;         ///< up and down
 constexpr double kHeightWorth = 0.5;    ///< m of travel for a metre of height that the base is moved by
 constexpr double kMarginWorth = 0.5;    ///< m of travel for a metre of margin,
 constexpr double kMostMargin = 0.2;     ///< m, of which more is worth nothing
-constexpr double kHalfBase = 0.1;       ///< m, of the foot of a robot
 constexpr double kSpareTurn = 0.35;     ///< rad, of the first joint, for arms whose shoulder is beside its axis
 constexpr std::size_t kLookedAt = 12;   ///< places that are looked at pose by pose,
 constexpr std::size_t kRounds = 5;      ///< and so many times as many as long as none reaches everything
@@ -47,7 +46,7 @@ constexpr std::size_t kTold = 5;
 struct BasePlace {
   Vector3 p_W = Vector3::Zero();
   double yaw = 0.0;
-  [[nodiscard]] Footprint outline() const { return {p_W.head<2>(), {kHalfBase, kHalfBase}, yaw}; }
+  [[nodiscard]] Footprint outline() const { return {p_W.head<2>(), {internal::kHalfFoot, internal::kHalfFoot}, yaw}; }
 };
 
 struct Candidate {

@@ -12,6 +12,7 @@
 #include "snug/report/page.hpp"
 #include "snug/report/table.hpp"
 #include "snug/robot/load_arm.hpp"
+#include "snug/runs/internal/place_task.hpp"
 #include "snug/runs/internal/reach_points.hpp"
 #include "snug/runs/reach_map.hpp"
 
@@ -52,7 +53,7 @@ report::FloorPlan plan_of(const model::Scenario& scenario, const ReachMap& map, 
     stand = stand.cwiseMax(2.0 * (scenario.aligner->X_WA.inverse() * pick.p_WS).head<2>());
   plan.outlines.push_back(
       {"aligner", outline_in(scenario.aligner->X_WA, Eigen::Vector2d::Zero(), stand), report::PlanInk::Thing, true});
-  const Eigen::Vector2d foot(0.1, 0.1), base = scenario.robot->X_WB.p.head<2>();
+  const Eigen::Vector2d foot(internal::kHalfFoot, internal::kHalfFoot), base = scenario.robot->X_WB.p.head<2>();
   plan.outlines.push_back({map.robot, outline_in(scenario.robot->X_WB, -foot, foot), report::PlanInk::Robot, true});
   plan.circles.push_back({base, reach, "as far as the tool reaches, pointing down"});
   double least = half.minCoeff();

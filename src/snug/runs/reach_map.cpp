@@ -238,15 +238,7 @@ const char* name_of(ReachVerdict verdict) {
 }
 
 ReachMap make_reach_map(const model::Scenario& scenario, int threads, const CheckOptions& options) {
-  const auto require = [&](bool is_there, const char* key, const char* expected) {
-    if (!is_there) throw InputError(scenario.source_name, key, "", expected);
-  };
-  require(scenario.robot.has_value(), "robot", "a robot, to map what it reaches");
-  require(scenario.tool.has_value(), "tool", "a tool, to map what it reaches");
-  const model::Container* container = model::find_container(scenario, scenario.target);
-  require(container != nullptr, "containers", "a container, to map what is reached in it");
-  const std::optional<double> yaw = motion::yaw_of(scenario.controller.X_WE_start.R);
-  require(yaw.has_value(), "controller.start_pose", "a tool that points down");
+  const auto [container, tool_yaw] = internal::find_target(scenario);
   const PoseReachability reach(scenario, options);
 
   ReachMap map;
@@ -254,7 +246,7 @@ ReachMap make_reach_map(const model::Scenario& scenario, int threads, const Chec
   map.container = container->name;
   map.X_WT = container->X_WT;
   map.inner_size = container->inner_size;
-  map.tool_yaw = *yaw;
+  map.tool_yaw = tool_yaw;
   const double spacing =
       container->inner_size.head<2>().maxCoeff() / (reach.is_searched() ? kMostAcrossSearched : kMostAcross);
   map.columns = std::max(1, static_cast<int>(std::lround(container->inner_size.x() / spacing)));

@@ -1,10 +1,13 @@
 // Lines: axes of joints as lines in space, and angles as the inverses of arms count them.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
-#include "snug/robot/arm.hpp"
+#include "snug/robot/kinematics.hpp"
 
 namespace snug::robot::internal {
 
@@ -37,6 +40,23 @@ inline bool are_square(const Line& a, const Line& b) {
 
 inline bool are_parallel(const Line& a, const Line& b) {
   return a.direction.cross(b.direction).norm() < std::sin(kLargestTilt);
+}
+
+/// Of an arm of six joints that turn.
+struct SixAxes {
+  std::array<Line, 6> axis;  ///< at q = 0, in the root link
+  Pose X_BE;                 ///< at q = 0
+};
+/// Nothing for another arm.
+inline std::optional<SixAxes> six_axes(const ArmModel& arm) {
+  const auto is_turning = [](const Joint& joint) { return joint.kind == JointKind::Revolute; };
+  if (arm.joint_count() != 6 || !std::ranges::all_of(arm.joints, is_turning)) return std::nullopt;
+  ArmModel at_root = arm;
+  at_root.X_WB = Pose{};
+  const ArmPose at = forward(at_root, JointVector::Zero(6));
+  SixAxes axes{{}, at.X_WE};
+  for (std::size_t i = 0; i < 6; ++i) axes.axis[i] = {at.X_WS[i + 1].p, at.axis_W[i]};
+  return axes;
 }
 
 inline Matrix3 about(const Vector3& axis, double angle) noexcept {

@@ -80,22 +80,14 @@ bool PlaceTask::is_free(const CornerPlace& corner) const {
 }
 
 PlaceTask make_place_task(const model::Scenario& scenario, const PlaceOptions& options) {
-  const auto require = [&](bool is_there, const char* key, const char* expected) {
-    if (!is_there) throw InputError(scenario.source_name, key, "", expected);
-  };
-  require(scenario.robot.has_value(), "robot", "a robot, to find its place");
-  require(scenario.tool.has_value(), "tool", "a tool, to find the robot's place");
-  require(scenario.aligner.has_value(), "aligner", "an aligner, to find its place");
-  const model::Container* container = model::find_container(scenario, scenario.target);
-  require(container != nullptr, "containers", "a container, to find the robot's place beside it");
-  const std::optional<double> yaw = motion::yaw_of(scenario.controller.X_WE_start.R);
-  require(yaw.has_value(), "controller.start_pose", "a tool that points down");
+  const auto [container, tool_yaw] = find_target(scenario);
+  if (!scenario.aligner) throw InputError(scenario.source_name, "aligner", "", "an aligner, to find its place");
   const std::vector<StandingItem> items = find_items(scenario);
-  require(!items.empty(), "sequences", "items that are picked at the aligner");
+  if (items.empty()) throw InputError(scenario.source_name, "sequences", "", "items that are picked at the aligner");
   check_bodies(scenario, options);
 
   PlaceTask task;
-  task.tool_yaw = *yaw;
+  task.tool_yaw = tool_yaw;
   task.pick_length = cup::pick_length(scenario.cup);
   task.X_WT = container->X_WT;
   const double wall = container->has_walls ? container->wall_thickness : 0.0;

@@ -50,6 +50,8 @@ struct PlaceTask {
 
 /// m, kept free between container, aligner and base.
 inline constexpr double kFreeBetween = 0.06;
+/// m, of the foot of a robot.
+inline constexpr double kHalfFoot = 0.1;
 /// m, from where a pick is approached.
 inline constexpr double kOverPick = 0.15;
 

@@ -2,10 +2,26 @@
 #include "snug/runs/internal/reach_points.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "snug/cell/aligner_feed.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/motion/tool_yaw.hpp"
 
 namespace snug::runs::internal {
+
+ReachTarget find_target(const model::Scenario& scenario) {
+  const auto require = [&](bool is_there, const char* key, const char* expected) {
+    if (!is_there) throw InputError(scenario.source_name, key, "", expected);
+  };
+  require(scenario.robot.has_value(), "robot", "a robot, to tell what it reaches");
+  require(scenario.tool.has_value(), "tool", "a tool, to tell what it reaches");
+  const model::Container* container = model::find_container(scenario, scenario.target);
+  require(container != nullptr, "containers", "a container, to tell what is reached in it");
+  const std::optional<double> yaw = motion::yaw_of(scenario.controller.X_WE_start.R);
+  require(yaw.has_value(), "controller.start_pose", "a tool that points down");
+  return {container, *yaw};
+}
 
 std::vector<StandingItem> find_items(const model::Scenario& scenario) {
   std::vector<StandingItem> items;

@@ -9,6 +9,14 @@
 
 namespace snug::runs::internal {
 
+/// What a robot has to reach.
+struct ReachTarget {
+  const model::Container* container = nullptr;
+  double tool_yaw = 0.0;  ///< rad, at its start
+};
+/// Throws InputError for a scenario without robot, tool, target container, or with a tool that does not point down.
+[[nodiscard]] ReachTarget find_target(const model::Scenario& scenario);
+
 /// An item as it stands at the aligner.
 struct StandingItem {
   std::string name;

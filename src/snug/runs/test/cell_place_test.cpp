@@ -116,7 +116,8 @@ TEST(CellPlace, ProfileKnowsWhatIsReached) {
   EXPECT_LT(profile.depth(0.5, 9.0), 0.0) << "beyond what was looked at";
   EXPECT_GT(profile.reach(), 0.6);
   EXPECT_LT(profile.reach(), 1.0);
-  // Depth is a distance: it changes by no more than the way between two points, up to its grid.
+  // Depth is a distance: from point to point of its grid of 29 mm it changes by no more than that way, or by two half
+  // steps more where the sign changes.
   for (double r = 0.1; r < 0.9; r += 0.01)
     EXPECT_LE(std::abs(profile.depth(r + 0.01, 0.0) - profile.depth(r, 0.0)), 0.031) << r;
 }
