@@ -73,7 +73,6 @@ std::unique_ptr<const JointPace> make_joint_pace(const model::Scenario& scenario
   std::error_code error;
   if (!scenario.robot || !std::filesystem::exists(robot::urdf_path(scenario), error)) return nullptr;
   robot::ArmModel arm = robot::load_arm(scenario);
-  if (!robot::InverseKinematics(arm).has_closed_form()) return nullptr;
   robot::JointVector posture = robot::joint_vector(scenario.robot->posture);
   if (posture.size() == 0) posture.setZero(arm.joint_count());
   return std::make_unique<const JointPace>(std::move(arm), std::move(posture),

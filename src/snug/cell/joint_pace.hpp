@@ -30,9 +30,8 @@ class JointPace final : public motion::PathLimits {
 /// The robot's first axis. None without a robot, and where it does not stand upright.
 [[nodiscard]] std::optional<motion::PanAxis> find_pan_axis(const model::Scenario& scenario);
 
-/// With the share of the scenario (velocity_fraction) and the tempo. None without a robot, where its file is not there,
-/// and for an arm whose inverse has no closed form: a search along every way would take too long. The controller of the
-/// joints keeps their limits all the same, the tool is then late.
+/// With the share of the scenario (velocity_fraction) and the tempo. None without a robot and where its file is not
+/// there.
 [[nodiscard]] std::unique_ptr<const JointPace> make_joint_pace(const model::Scenario& scenario, double tempo);
 
 }  // namespace snug::cell

@@ -144,7 +144,7 @@ std::optional<JointVector> InverseKinematics::refine(const Pose& X_WE, const Joi
 }
 
 IkBranches InverseKinematics::branches(const Pose& X_WE, const JointVector& q_near) const noexcept {
-  if (!has_closed_form()) return search(X_WE, q_near, kSearchStarts);
+  if (!has_closed_form()) return search(X_WE, q_near);
   IkBranches found;
   const Pose X_BE = arm_.X_WB.inverse() * X_WE;
   const ClosedBranches ideal =
@@ -171,37 +171,42 @@ bool InverseKinematics::add_branch(const Pose& X_WE, const JointVector& start, I
   return true;
 }
 
-IkBranches InverseKinematics::search(const Pose& X_WE, const JointVector& q_near, int starts) const noexcept {
+std::optional<JointVector> InverseKinematics::search_from(const Pose& X_WE, const JointVector& q_start) const noexcept {
+  JointVector q = q_start;
+  for (int k = 0; k < kSearchSteps; ++k) {
+    const ArmPose at = forward(arm_, q);
+    const Vector6 error = pose_error(at.X_WE, X_WE);
+    const double size = error.norm();
+    if (size < 1e-4) break;
+    JointVector step = damped_step(tool_jacobian(arm_, at), error, std::min(0.1, 0.1 * size));
+    const double longest = step.cwiseAbs().maxCoeff();
+    if (longest > 0.5) step *= 0.5 / longest;
+    q += step;
+    // Within the limits all the time, so that what is found can be used.
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      const Joint& joint = arm_.joints[static_cast<std::size_t>(i)];
+      q(i) = std::clamp(q(i), joint.lower, joint.upper);
+    }
+  }
+  return refine(X_WE, q);
+}
+
+IkBranches InverseKinematics::search(const Pose& X_WE, const JointVector& q_near) const noexcept {
   IkBranches found;
   Rng rng = Rng(1).split("inverse kinematics");
-  for (int s = 0; s < starts && found.count < 8; ++s) {
-    JointVector q = s == 0 ? q_near : random_start(arm_, rng);
-    for (int k = 0; k < kSearchSteps; ++k) {
-      const ArmPose at = forward(arm_, q);
-      const Vector6 error = pose_error(at.X_WE, X_WE);
-      const double size = error.norm();
-      if (size < 1e-4) break;
-      JointVector step = damped_step(tool_jacobian(arm_, at), error, std::min(0.1, 0.1 * size));
-      const double longest = step.cwiseAbs().maxCoeff();
-      if (longest > 0.5) step *= 0.5 / longest;
-      q += step;
-      // Within the limits all the time, so that what is found can be used.
-      for (Eigen::Index i = 0; i < q.size(); ++i) {
-        const Joint& joint = arm_.joints[static_cast<std::size_t>(i)];
-        q(i) = std::clamp(q(i), joint.lower, joint.upper);
-      }
-    }
-    const std::optional<JointVector> exact = refine(X_WE, q);
-    if (!exact) continue;
-    JointVector solution = *exact;
-    JointVector within = solution;
-    if (!fit_turns(arm_, q_near, within)) continue;
-    if (!is_known(found, within)) found.q[static_cast<std::size_t>(found.count++)] = within;
+  for (int s = 0; s < kSearchStarts && found.count < 8; ++s) {
+    std::optional<JointVector> q = search_from(X_WE, s == 0 ? q_near : random_start(arm_, rng));
+    if (!q || !fit_turns(arm_, q_near, *q) || is_known(found, *q)) continue;
+    found.q[static_cast<std::size_t>(found.count++)] = *q;
   }
   return found;
 }
 
 Expected<JointVector, NoReach> InverseKinematics::nearest(const Pose& X_WE, const JointVector& q_near) const noexcept {
+  if (!has_closed_form()) {
+    std::optional<JointVector> q = search_from(X_WE, q_near);
+    if (q && fit_turns(arm_, q_near, *q)) return *q;
+  }
   IkBranches found = branches(X_WE, q_near);
   // Following a path, the joints before are the best start there is.
   if (has_closed_form() && found.count > 0) (void)add_branch(X_WE, q_near, found);

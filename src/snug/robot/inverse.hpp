@@ -52,7 +52,9 @@ class InverseKinematics {
   /// ideal, near a singularity (singularity_measure below 0.06), one of two branches that almost meet may be missing.
   [[nodiscard]] IkBranches branches(const Pose& X_WE, const JointVector& q_near) const noexcept;
 
-  /// Of all branches and full turns within the joint limits, the one nearest to q_near (sum of squares).
+  /// Of all branches and full turns within the joint limits, the one nearest to q_near (sum of squares). Of an arm
+  /// without closed form the one to which a search from q_near leads; only where that does not arrive, the nearest of
+  /// those that other starts lead to.
   [[nodiscard]] Expected<JointVector, NoReach> nearest(const Pose& X_WE, const JointVector& q_near) const noexcept;
 
   /// Newton steps (damped near singularities) from q to the pose, limits not looked at; nothing when they do not
@@ -62,7 +64,9 @@ class InverseKinematics {
  private:
   /// Refines `start`; false when that does not arrive or arrives at a branch that is known.
   bool add_branch(const Pose& X_WE, const JointVector& start, IkBranches& found) const noexcept;
-  [[nodiscard]] IkBranches search(const Pose& X_WE, const JointVector& q_near, int starts) const noexcept;
+  /// By damped least squares from one start, refined; nothing when it does not arrive.
+  [[nodiscard]] std::optional<JointVector> search_from(const Pose& X_WE, const JointVector& q_start) const noexcept;
+  [[nodiscard]] IkBranches search(const Pose& X_WE, const JointVector& q_near) const noexcept;
 
   ArmModel arm_;
   std::optional<UrGeometry> ur_;

@@ -158,6 +158,20 @@ TEST(Inverse, SearchesAnArmWithoutClosedForm) {
   EXPECT_EQ(found_count, kCount);
 }
 
+TEST(Inverse, TakesWhatASearchFromNearbyLeadsTo) {
+  const ArmModel arm = offset_wrist_arm();
+  const InverseKinematics inverse(arm);
+  Rng rng = Rng(15).split("nearby");
+  for (int k = 0; k < 60; ++k) {
+    const JointVector q = random_joints(rng, 6, 1.5);
+    const Pose X_WE = forward_tool(arm, q);
+    const auto found = inverse.nearest(X_WE, q + random_joints(rng, 6, 0.02));
+    ASSERT_TRUE(found.has_value());
+    if (singularity_measure(tool_jacobian(arm, forward(arm, q))) < 0.06) continue;
+    EXPECT_LT((*found - q).cwiseAbs().maxCoeff(), 1e-8) << k;
+  }
+}
+
 TEST(Inverse, DoesNotConvergeToAPoseThatIsNotThere) {
   const ArmModel arm = offset_wrist_arm();
   const auto found = InverseKinematics(arm).nearest(Pose{Matrix3::Identity(), Vector3(5, 0, 0)}, JointVector::Zero(6));
