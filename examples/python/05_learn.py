@@ -13,8 +13,20 @@ import time
 
 import numpy as np
 
-FEATURES = 12
+FEATURES = 13
 JUDGED_SEED = 10**6  # of the first order that is judged; orders that are trained on have lower ones
+
+
+def contact(low, extents, container, boxes):
+    """(places,): the part of each place's surface that touches walls, floor or boxes, to a millimetre."""
+    high, area, (x, y) = low + extents, np.zeros(len(low)), 0.5 * container[:2]
+    walls = [[-9, -9, -9, -x, 9, 9], [x, -9, -9, 9, 9, 9], [-9, -9, -9, 9, -y, 9], [-9, y, -9, 9, 9, 9], [-9, -9, -9, 9, 9, 0]]
+    for other in np.array([*walls, *(box[:6] for box in boxes)], float):
+        shared = np.clip(np.minimum(high, other[3:]) - np.maximum(low, other[:3]), 0, None)
+        for axis in range(3):
+            faces = (np.abs(low[:, axis] - other[3 + axis]) < 1e-3).astype(float) + (np.abs(high[:, axis] - other[axis]) < 1e-3)
+            area += faces * np.delete(shared, axis, axis=1).prod(axis=1)
+    return area / (2 * (extents * np.roll(extents, 1, axis=1)).sum(axis=1))
 
 
 def features(low, extents, support, item, container, boxes):
@@ -30,6 +42,7 @@ def features(low, extents, support, item, container, boxes):
     return np.column_stack([
         low[:, 2] / container[2], above / container[2], (above - top) / container[2], extents / container, gaps / container[:2],
         np.asarray(support, float), same * float(np.prod(item[:3])) / np.prod(container) * 10, same * item[3] / 10, same * filled,
+        contact(low, extents, container, boxes),
     ]).astype(np.float32)
 
 
@@ -120,6 +133,11 @@ def flattest(seen, masks):
     return int(np.lexsort((seen[:, 6] + seen[:, 7], np.round(seen[:, 1], 2), ~masks))[0])
 
 
+def most_contact(seen, masks):
+    """The rule of one line that is hard to beat: the place that touches most."""
+    return int(np.lexsort((seen[:, 0], -np.round(seen[:, 12], 6), ~masks))[0])
+
+
 class Learnt:
     """The agent for `snug pack --agent 05_learn:Learnt`; SNUG_LEARNT names the file (learnt.zip)."""
 
@@ -179,7 +197,7 @@ def main(steps=20000, file="learnt.zip", episodes=200):
     model.learn(int(steps), callback=Curve())
     model.save(file)
     for name, choose in (("learnt", chosen), ("lowest first", lambda _, masks: int(np.argmax(masks))),
-                         ("flattest, then to the walls", flattest), ("by chance", lambda _, masks: int(random.choice(np.flatnonzero(masks))))):
+                         ("most contact", most_contact), ("flattest, then to the walls", flattest), ("by chance", lambda _, masks: int(random.choice(np.flatnonzero(masks))))):
         mean, error = judge(scenario, choose, int(episodes))
         print(f"{name}: {mean:.2f} +- {error:.2f} % of the container, {episodes} orders")
 

@@ -16,8 +16,8 @@ constexpr double kLongestPlacement = 300.0;  ///< s, simulated
 class Execution final : public Placer {
  public:
   explicit Execution(const Episode& episode)
-      : simulation_(
-            std::make_shared<const cell::Simulation>(episode.scenario, episode.sequence, cell::SimulationOptions{})),
+      : simulation_(std::make_shared<const cell::Simulation>(
+            episode.scenario, episode.sequence, cell::SimulationOptions{.tracking = motion::FastTracking{}})),
         settings_(episode.settings),
         container_(*model::find_container(simulation_->scenario(), simulation_->scenario().target)),
         state_(simulation_->make_state()),
