@@ -48,11 +48,17 @@ robot:
 """
 
 
+def follower(name, leader, parent, child, origin):
+    """A joint about y that turns back what `leader` turns."""
+    text = joint(name, "revolute", parent, child, "0 1 0", limit='lower="-2.5" upper="2.5" effort="200" velocity="4"', origin=origin)
+    return text.replace("</joint>", f'<mimic joint="{leader}" multiplier="-1"/></joint>')
+
+
 def joints_of(name, links, *joints):
     return "\n".join([f'<robot name="{name}">', *links, *joints, "</robot>"])
 
 
-# Both end at a flange whose z points down. The joint "level" of the palletiser is what its parallel rods keep level.
+# Both end at a flange whose z points down. Two joints of the palletiser follow others, as its rods keep the flange level.
 SCARA = joints_of(
     "scara", [link("base_link"), link("inner", 6), link("outer", 4), link("quill", 1.5), link("shaft", 0.5), link("tool0")],
     joint("j1", "revolute", "base_link", "inner", limit='lower="-2.4" upper="2.4" effort="200" velocity="6"', origin='xyz="0 0 0.2"'),
@@ -61,11 +67,11 @@ SCARA = joints_of(
     joint("j4", "revolute", "quill", "shaft", limit='lower="-6.2" upper="6.2" effort="30" velocity="15"'),
     joint("tip", "fixed", "shaft", "tool0", origin='rpy="3.141592653589793 0 0"'))
 PALLETISER = joints_of(
-    "palletiser", [link("base_link"), link("column", 20), link("lower", 15), link("upper", 10), link("wrist", 4), link("flange", 1), link("tool0")],
+    "palletiser", [link("base_link"), link("column", 20), link("lower", 15), link("upper", 10), link("rods", 1), link("wrist", 4), link("flange", 1), link("tool0")],
     joint("j1", "revolute", "base_link", "column", limit='lower="-3" upper="3" effort="900" velocity="3"', origin='xyz="0 0 0.4"'),
     joint("j2", "revolute", "column", "lower", "0 1 0", limit='lower="-0.9" upper="1.4" effort="900" velocity="3"', origin='xyz="0.15 0 0"'),
     joint("j3", "revolute", "lower", "upper", "0 1 0", limit='lower="-1.0" upper="2.3" effort="700" velocity="3"', origin='xyz="0 0 0.6"'),
-    joint("level", "revolute", "upper", "wrist", "0 1 0", limit='lower="-2.5" upper="2.5" effort="200" velocity="4"', origin='xyz="0.6 0 0"'),
+    follower("level_j3", "j3", "upper", "rods", 'xyz="0.6 0 0"'), follower("level_j2", "j2", "rods", "wrist", 'xyz="0 0 0"'),
     joint("j4", "revolute", "wrist", "flange", limit='lower="-6.2" upper="6.2" effort="100" velocity="6"', origin='xyz="0.1 0 -0.1"'),
     joint("tip", "fixed", "flange", "tool0", origin='rpy="3.141592653589793 0 0"'))
 
@@ -95,7 +101,7 @@ class Arms(unittest.TestCase):
   posture: [-0.3206, -1.6109, -0.09, 1.1635]"""),
                 ("palletiser", PALLETISER, "yaw_deg: 180.0, position: [0.5, -0.25, 0.0]", "0.459237, -0.150974, 0.42", """
   pose: {position: [0.59, 0.69, 0.0], yaw_deg: -103.0}
-  posture: [0.0469, 0.0616, 0.2586, -0.3202, -1.3908]""")):
+  posture: [0.0469, 0.0616, 0.2586, -1.3908]""")):
             with self.subTest(arm=name):
                 cell = CELL.read_text().replace("position: [-0.40, -0.10, 0.0]", aligner).replace("0.0, -0.35, 0.40", start)
                 self.assertIn(aligner, cell)

@@ -26,7 +26,7 @@ def contact(low, extents, container, boxes):
         for axis in range(3):
             faces = (np.abs(low[:, axis] - other[3 + axis]) < 1e-3).astype(float) + (np.abs(high[:, axis] - other[axis]) < 1e-3)
             area += faces * np.delete(shared, axis, axis=1).prod(axis=1)
-    return area / (2 * (extents * np.roll(extents, 1, axis=1)).sum(axis=1))
+    return area / np.maximum(2 * (extents * np.roll(extents, 1, axis=1)).sum(axis=1), 1e-9)  # rows without a place have no size
 
 
 def features(low, extents, support, item, container, boxes):

@@ -174,6 +174,9 @@ std::string deviation_name(const robot::ArmModel& arm, int index) {
 }
 
 PosePairs make_pose_pairs(Table table, const robot::ArmModel& arm) {
+  if (!arm.followers.empty())
+    throw InputError(arm.name, "joint '" + arm.followers.front().joint.name + "'", "a joint that mimics another",
+                     "an arm each of whose joints moves by itself");
   PosePairs pairs;
   const auto n = arm.joints.size();
   for (std::size_t i = 0; i < n; ++i) {

@@ -96,7 +96,7 @@ void CellArm::attach(const CellWorld& world) {
   }
   for (const physics::Geom& geom : world.model.bodies[static_cast<std::size_t>(world.tool.index)].geoms) {
     if (!geom.touches_held_body) continue;  // the cup gives way: docs/theory/controller.md, section 6
-    shapes_.push_back({world.tool.index, {model().joint_count(), model().X_SE * geom.X_BG, geom.shape, 0.0}});
+    shapes_.push_back({world.tool.index, {model().last_segment(), model().X_SE * geom.X_BG, geom.shape, 0.0}});
   }
 }
 
@@ -178,7 +178,7 @@ void CellArm::add_loads(const CellWorld& world, const physics::WorldState& state
       const int link = is_tool ? -1 : link_of(body);
       if (!is_tool && link < 0) continue;
       const Vector3 force_W = is_b ? contact.force_W : Vector3(-contact.force_W);
-      const int segment = is_tool ? model().joint_count() : model().links[static_cast<std::size_t>(link)].segment;
+      const int segment = is_tool ? model().last_segment() : model().links[static_cast<std::size_t>(link)].segment;
       add_force(at, segment, contact.p_WQ, force_W, is_tool, loads);
       const physics::BodyId other = is_b ? contact.a : contact.b;
       if (force_W.norm() > loads.worst_force) {

@@ -63,7 +63,7 @@ Clearance::Clearance(const robot::ArmModel& arm, std::span<const CarriedShapes> 
     parts_.push_back(std::move(part));
   }
   for (const CarriedShapes& load : carried) {
-    ArmPart part{load.name, arm.joint_count(), {}};
+    ArmPart part{load.name, arm.last_segment(), {}};
     for (const model::PlacedShape& shape : load.shapes) part.shapes.push_back(arm_shape(part.segment, arm.X_SE, shape));
     parts_.push_back(std::move(part));
   }

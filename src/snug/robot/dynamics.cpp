@@ -11,23 +11,23 @@ struct SegmentMotion {
   Vector3 a = Vector3::Zero();
 };
 
-using SegmentMotions = std::array<SegmentMotion, kMaxJoints + 1>;
+using SegmentMotions = std::array<SegmentMotion, kMaxMoving + 1>;
 
 /// Outward pass. An upward acceleration of the base by -gravity weighs all masses.
 SegmentMotions move_segments(const ArmModel& arm, const ArmPose& at, const JointVector& qd, const JointVector& qdd,
                              const Vector3& gravity_W) noexcept {
   SegmentMotions motions;
   motions[0].a = -gravity_W;
-  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+  for (std::size_t i = 0; i < arm.moving_count(); ++i) {
+    const MovingJoint moving = arm.moving(i);
     const SegmentMotion& before = motions[i];
     SegmentMotion& after = motions[i + 1];
     const Vector3& axis = at.axis_W[i];
-    const double rate = qd(static_cast<Eigen::Index>(i));
-    const double rate_change = qdd(static_cast<Eigen::Index>(i));
+    const double rate = moving.rate(qd), rate_change = moving.rate(qdd);
     const Vector3 r = at.X_WS[i + 1].p - at.X_WS[i].p;
     after = before;
     after.a += before.alpha.cross(r) + before.w.cross(before.w.cross(r));
-    if (arm.joints[i].kind == JointKind::Revolute) {
+    if (moving.joint.kind == JointKind::Revolute) {
       after.w += axis * rate;
       after.alpha += axis * rate_change + before.w.cross(axis) * rate;
     } else {
@@ -50,24 +50,28 @@ Wrench inertial_wrench(const SpatialInertia& body, const Pose& X_WB, const Vecto
   return F;
 }
 
-/// `forces`: that the joints pass on, in W; may be absent.
+/// `forces`: that the joints pass on, each in its own frame; may be absent. A joint drives those that follow it, too.
 JointVector solve_torques(const ArmModel& arm, const ArmPose& at, const SegmentMotions& motions, const Wrench& F_Eo_W,
                           std::array<Vector3, kMaxJoints>* forces = nullptr) noexcept {
-  const int n = arm.joint_count();
-  JointVector tau(n);
-  // Inward: the wrench that segment i needs from its joint, about its origin.
+  JointVector tau = JointVector::Zero(arm.joint_count());
+  // Inward: the wrench that a segment needs from the joint before it, about its origin.
   Wrench needed{-F_Eo_W.force, -F_Eo_W.torque};
   Vector3 about = at.X_WE.p;
-  for (int i = n; i >= 1; --i) {
-    const auto k = static_cast<std::size_t>(i);
+  for (std::size_t k = arm.moving_count(); k >= 1; --k) {
+    const MovingJoint moving = arm.moving(k - 1);
     const Vector3& origin = at.X_WS[k].p;
     const Wrench own = inertial_wrench(arm.segments[k], at.X_WS[k], origin, motions[k], origin);
     needed.torque += own.torque + (about - origin).cross(needed.force);
     needed.force += own.force;
     about = origin;
-    const bool turns = arm.joints[k - 1].kind == JointKind::Revolute;
-    if (forces != nullptr) (*forces)[k - 1] = needed.force;
-    tau(i - 1) = at.axis_W[k - 1].dot(turns ? needed.torque : needed.force);
+    const bool turns = moving.joint.kind == JointKind::Revolute;
+    const double load = at.axis_W[k - 1].dot(turns ? needed.torque : needed.force);
+    if (arm.followers.empty())
+      tau(moving.q) = load;
+    else
+      tau(moving.q) += moving.ratio() * load;
+    if (forces != nullptr && moving.follower == nullptr)
+      (*forces)[static_cast<std::size_t>(moving.q)] = at.X_WS[k].R.transpose() * needed.force;
   }
   return tau;
 }
@@ -86,7 +90,6 @@ std::array<Vector3, kMaxJoints> joint_forces(const ArmModel& arm, const ArmMotio
   std::array<Vector3, kMaxJoints> forces;
   forces.fill(Vector3::Zero());
   (void)solve_torques(arm, at, move_segments(arm, at, motion.qd, motion.qdd, gravity_W), F_Eo_W, &forces);
-  for (std::size_t i = 0; i < arm.joints.size(); ++i) forces[i] = at.X_WS[i + 1].R.transpose() * forces[i];
   return forces;
 }
 
@@ -109,7 +112,7 @@ Wrench sensor_wrench(const ArmModel& arm, const ArmMotion& motion, int sensor_li
   const ArmPose at = forward(arm, motion.q);
   const SegmentMotions motions = move_segments(arm, at, motion.qd, motion.qdd, gravity_W);
   const Pose X_WL = link_pose(arm, at, sensor_link);
-  const auto last = arm.joints.size();
+  const std::size_t last = arm.moving_count();
   const Wrench own = inertial_wrench(load, X_WL, at.X_WS[last].p, motions[last], X_WL.p);
   const Vector3 force = F_Eo_W.force - own.force;
   const Vector3 torque = F_Eo_W.torque + (at.X_WE.p - X_WL.p).cross(F_Eo_W.force) - own.torque;

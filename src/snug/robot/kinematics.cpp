@@ -26,9 +26,11 @@ Matrix3 turn(const Vector3& axis, double angle) noexcept {
 ArmPose forward(const ArmModel& arm, const JointVector& q) noexcept {
   ArmPose at;
   at.X_WS[0] = arm.X_WB;
-  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
-    const Joint& joint = arm.joints[i];
-    const double value = q(static_cast<Eigen::Index>(i));
+  const std::size_t count = arm.moving_count();
+  for (std::size_t i = 0; i < count; ++i) {
+    const MovingJoint moving = arm.moving(i);
+    const Joint& joint = moving.joint;
+    const double value = moving.position(q);
     const Pose X_WJ = at.X_WS[i] * joint.X_SJ;
     at.axis_W[i] = X_WJ.R * joint.axis;
     if (joint.kind == JointKind::Revolute)
@@ -36,15 +38,16 @@ ArmPose forward(const ArmModel& arm, const JointVector& q) noexcept {
     else
       at.X_WS[i + 1] = {X_WJ.R, X_WJ.p + value * at.axis_W[i]};
   }
-  at.X_WE = at.X_WS[arm.joints.size()] * arm.X_SE;
+  at.X_WE = at.X_WS[count] * arm.X_SE;
   return at;
 }
 
 Pose forward_tool(const ArmModel& arm, const JointVector& q) noexcept {
   Pose X_WS = arm.X_WB;
-  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
-    const Joint& joint = arm.joints[i];
-    const double value = q(static_cast<Eigen::Index>(i));
+  for (std::size_t i = 0; i < arm.moving_count(); ++i) {
+    const MovingJoint moving = arm.moving(i);
+    const Joint& joint = moving.joint;
+    const double value = moving.position(q);
     X_WS = X_WS * joint.X_SJ;
     if (joint.kind == JointKind::Revolute)
       X_WS.R = X_WS.R * turn(joint.axis, value);
@@ -56,21 +59,25 @@ Pose forward_tool(const ArmModel& arm, const JointVector& q) noexcept {
 
 Jacobian point_jacobian(const ArmModel& arm, const ArmPose& at, int segment, const Vector3& p_WQ) noexcept {
   Jacobian J = Jacobian::Zero(6, arm.joint_count());
-  for (int i = 0; i < segment; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const Vector3& axis = at.axis_W[k];
-    if (arm.joints[k].kind == JointKind::Revolute) {
-      J.block<3, 1>(0, i) = axis.cross(p_WQ - at.X_WS[k + 1].p);
-      J.block<3, 1>(3, i) = axis;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(segment); ++i) {
+    const MovingJoint moving = arm.moving(i);
+    const Vector3& axis = at.axis_W[i];
+    Vector6 column = Vector6::Zero();
+    if (moving.joint.kind == JointKind::Revolute) {
+      column << axis.cross(p_WQ - at.X_WS[i + 1].p), axis;
     } else {
-      J.block<3, 1>(0, i) = axis;
+      column.head<3>() = axis;
     }
+    if (arm.followers.empty())
+      J.col(moving.q) = column;
+    else
+      J.col(moving.q) += moving.ratio() * column;
   }
   return J;
 }
 
 Jacobian tool_jacobian(const ArmModel& arm, const ArmPose& at) noexcept {
-  return point_jacobian(arm, at, arm.joint_count(), at.X_WE.p);
+  return point_jacobian(arm, at, arm.last_segment(), at.X_WE.p);
 }
 
 Vector6 tool_bias_acceleration(const ArmModel& arm, const ArmPose& at, const JointVector& qd) noexcept {
@@ -79,13 +86,14 @@ Vector6 tool_bias_acceleration(const ArmModel& arm, const ArmPose& at, const Joi
   Vector3 alpha = Vector3::Zero();
   Vector3 a = Vector3::Zero();
   Vector3 origin = at.X_WS[0].p;
-  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+  for (std::size_t i = 0; i < arm.moving_count(); ++i) {
+    const MovingJoint moving = arm.moving(i);
     const Vector3& axis = at.axis_W[i];
-    const double rate = qd(static_cast<Eigen::Index>(i));
+    const double rate = moving.rate(qd);
     const Vector3 r = at.X_WS[i + 1].p - origin;
     a += alpha.cross(r) + w.cross(w.cross(r));
     origin = at.X_WS[i + 1].p;
-    if (arm.joints[i].kind == JointKind::Revolute) {
+    if (moving.joint.kind == JointKind::Revolute) {
       alpha += w.cross(axis) * rate;
       w += axis * rate;
     } else {

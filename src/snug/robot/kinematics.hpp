@@ -12,8 +12,8 @@ using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kM
 
 /// Where everything is at one q.
 struct ArmPose {
-  std::array<Pose, kMaxJoints + 1> X_WS;   ///< segments 0 .. joints
-  std::array<Vector3, kMaxJoints> axis_W;  ///< unit axis of each joint
+  std::array<Pose, kMaxMoving + 1> X_WS;   ///< segments 0 .. moving joints
+  std::array<Vector3, kMaxMoving> axis_W;  ///< unit axis of each moving joint
   Pose X_WE;
 };
 
@@ -30,7 +30,7 @@ struct ArmPose {
 
 /// J_WE: V_WE_W = J_WE qd.
 [[nodiscard]] Jacobian tool_jacobian(const ArmModel& arm, const ArmPose& at) noexcept;
-/// J_WQ for a point Q [m, W] that moves with `segment`; columns of joints behind it are zero.
+/// J_WQ for a point Q [m, W] that moves with `segment`; joints behind it move it not.
 [[nodiscard]] Jacobian point_jacobian(const ArmModel& arm, const ArmPose& at, int segment,
                                       const Vector3& p_WQ) noexcept;
 /// d/dt(J_WE) qd: acceleration of E when qdd = 0, linear part first, in W.

@@ -57,7 +57,7 @@ void mount_tool(const model::Scenario& scenario, const Pose& X_LE, ArmModel& arm
   Link tool;
   tool.name = kMountedTool;
   tool.parent = arm.tool_link;
-  tool.segment = arm.joint_count();
+  tool.segment = arm.last_segment();
   tool.X_SL = arm.X_SE * X_LE;
   if (scenario.tool) {
     const Vector3 p_EL = X_LE.inverse().p;

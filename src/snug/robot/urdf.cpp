@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "snug/core/input_error.hpp"
@@ -259,6 +260,8 @@ class Assembler {
     arm_.segments.assign(1, SpatialInertia{0.0, Vector3::Zero(), Matrix3::Zero()});
     add_link(root(), -1, 0, Pose{});
     sum_segments();
+    if (arm_.followers.empty()) arm_.order.clear();
+    for (std::size_t k = 0; k < arm_.followers.size(); ++k) join(arm_.followers[k], *raw_followers_[k]);
     return arm_;
   }
 
@@ -328,31 +331,76 @@ class Assembler {
     if (raw.type == "planar" || raw.type == "floating")
       raw.element.fail("type=\"" + raw.type + "\" between the root and the tool frame '" + tool_frame_ + "'",
                        "revolute, continuous, prismatic or fixed");
-    if (raw.element.has("mimic"))
-      raw.element.child("mimic").fail(
-          "a joint that mimics another between the root and the tool frame '" + tool_frame_ + "'",
-          "a serial arm: there each joint moves by itself");
-    if (arm_.joint_count() == kMaxJoints)
-      raw.element.fail("a moving joint more than " + std::to_string(kMaxJoints), "no more than that");
+    const Coupling coupling = find_coupling(raw);
+    const bool is_led = coupling.leader != &raw;
+    if (is_led && (coupling.ratio == 0.0 || !moves(*coupling.leader))) {
+      add_link(raw.child, parent, segment, X_SJ * frozen_pose(raw));
+      return;
+    }
+    if (is_led ? arm_.followers.size() == kMaxMoving - kMaxJoints : arm_.joint_count() == kMaxJoints)
+      raw.element.fail("a moving joint more than " + std::to_string(is_led ? kMaxMoving - kMaxJoints : kMaxJoints),
+                       is_led ? "no more that mimic others" : "no more than that");
     Joint joint = read_moving_joint(raw);
     joint.X_SJ = X_SJ;
-    arm_.joints.push_back(joint);
+    if (is_led) {
+      arm_.order.push_back(-1 - static_cast<int>(arm_.followers.size()));
+      arm_.followers.push_back({joint, 0, coupling.ratio, coupling.offset});
+      raw_followers_.push_back(&raw);
+    } else {
+      arm_.order.push_back(arm_.joint_count());
+      arm_.joints.push_back(joint);
+    }
     arm_.segments.push_back({0.0, Vector3::Zero(), Matrix3::Zero()});
-    add_link(raw.child, parent, arm_.joint_count(), Pose{});
+    add_link(raw.child, parent, arm_.last_segment(), Pose{});
   }
 
-  /// Where a joint off the path stands for good: at 0, or at the limit nearest to it; one that mimics, where it stands
-  /// with what it mimics (a joint of the path at 0).
-  double frozen_value(const RawJoint& raw, bool follows = true) const {
-    if (follows && raw.element.has("mimic")) {
-      const Element mimic = raw.element.child("mimic");
-      const std::string leader = mimic.text("joint");
-      const auto found = std::ranges::find(raw_.joints, leader, &RawJoint::name);
-      if (found == raw_.joints.end()) mimic.fail("joint '" + leader + "', which is not there", "the name of a joint");
-      const double value = on_path_.contains(found->child) ? 0.0 : frozen_value(*found, false);
-      return mimic.number_or("multiplier", 1.0) * value + mimic.number_or("offset", 0.0);
+  [[nodiscard]] bool moves(const RawJoint& raw) const { return on_path_.contains(raw.child) && raw.type != "fixed"; }
+
+  /// What leads a joint in the end, through others that mimic: itself where it moves by itself. Of a circle off the
+  /// path that closes, one of it.
+  struct Coupling {
+    const RawJoint* leader;
+    double ratio = 1.0, offset = 0.0;
+  };
+  [[nodiscard]] Coupling find_coupling(const RawJoint& raw) const {
+    Coupling coupling{&raw};
+    std::set<const RawJoint*> passed;
+    while (coupling.leader->element.has("mimic") && passed.insert(coupling.leader).second) {
+      const Element mimic = coupling.leader->element.child("mimic");
+      const std::string name = mimic.text("joint");
+      const auto found = std::ranges::find(raw_.joints, name, &RawJoint::name);
+      if (found == raw_.joints.end()) mimic.fail("joint '" + name + "', which is not there", "the name of a joint");
+      if (passed.contains(&*found) && moves(raw))
+        mimic.fail("joints that mimic each other in a circle", "one of them that moves by itself");
+      coupling.offset += coupling.ratio * mimic.number_or("offset", 0.0);
+      coupling.ratio *= mimic.number_or("multiplier", 1.0);
+      coupling.leader = &*found;
     }
-    if (raw.type == "continuous" || !raw.element.has("limit")) return 0.0;
+    return coupling;
+  }
+
+  /// The leader moves no farther and no faster than the limits of what follows it allow.
+  void join(Follower& follower, const RawJoint& raw) {
+    follower.leader = find_joint(arm_, find_coupling(raw).leader->name);
+    Joint& leader = arm_.joints[static_cast<std::size_t>(follower.leader)];
+    const auto [low, high] = std::minmax({(follower.joint.lower - follower.offset) / follower.ratio,
+                                          (follower.joint.upper - follower.offset) / follower.ratio});
+    leader.lower = std::max(leader.lower, low);
+    leader.upper = std::min(leader.upper, high);
+    leader.max_speed = std::min(leader.max_speed, follower.joint.max_speed / std::abs(follower.ratio));
+    if (!(leader.lower < leader.upper))
+      raw.element.fail("limits that leave '" + leader.name + "', which it mimics, no range", "limits that overlap");
+  }
+
+  /// Where a joint stands that does not move: at 0, or at the limit nearest to it; one that mimics, where it stands
+  /// with what leads it (a joint that moves: at 0).
+  double frozen_value(const RawJoint& joint) const {
+    const Coupling coupling = find_coupling(joint);
+    return coupling.ratio * (moves(*coupling.leader) ? 0.0 : rest_value(*coupling.leader)) + coupling.offset;
+  }
+
+  static double rest_value(const RawJoint& raw) {
+    if (raw.type == "continuous" || raw.type == "fixed" || !raw.element.has("limit")) return 0.0;
     const Element limit = raw.element.child("limit");
     const double lower = limit.number_or("lower", 0.0), upper = limit.number_or("upper", 0.0);
     return lower <= upper ? std::clamp(0.0, lower, upper) : 0.0;
@@ -385,6 +433,7 @@ class Assembler {
   const RawRobot& raw_;
   const std::string& tool_frame_;
   std::map<std::string, bool> on_path_;
+  std::vector<const RawJoint*> raw_followers_;
   ArmModel arm_;
 };
 

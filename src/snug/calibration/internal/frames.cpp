@@ -55,14 +55,14 @@ Pose joint_origin(const robot::ArmModel& arm, std::size_t joint) {
 
 int last_link(const robot::ArmModel& arm) {
   int i = 0;
-  while (arm.links[static_cast<std::size_t>(i)].segment != arm.joint_count()) ++i;
+  while (arm.links[static_cast<std::size_t>(i)].segment != arm.last_segment()) ++i;
   return i;
 }
 
 void move_end(robot::ArmModel& arm, const Pose& move) {
   const int first = last_link(arm);
   for (std::size_t i = static_cast<std::size_t>(first) + 1; i < arm.links.size(); ++i)
-    if (arm.links[i].segment == arm.joint_count()) arm.links[i].X_SL = move * arm.links[i].X_SL;
+    if (arm.links[i].segment == arm.last_segment()) arm.links[i].X_SL = move * arm.links[i].X_SL;
   if (arm.tool_link != first) arm.X_SE = move * arm.X_SE;
 }
 

@@ -133,7 +133,7 @@ TEST(Urdf, RefusesWhatItCannotUseWithLineAndElement) {
   expect_refused(replaced(small_arm(), "velocity=\"2\"", "velocity=\"-2\""), "velocity and effort >= 0", "8");
   expect_refused(replaced(small_arm(), "type=\"prismatic\"", "type=\"planar\""), "revolute, continuous", "9");
   expect_refused(replaced(small_arm(), "type=\"prismatic\"", "type=\"screw\""), "revolute, continuous", "9");
-  expect_refused(replaced(small_arm(), "<axis xyz=\"1 0 0\"/>", "<mimic joint=\"turn\"/>"), "moves by itself", "10");
+  expect_refused(replaced(small_arm(), "<axis xyz=\"1 0 0\"/>", "<mimic joint=\"slide\"/>"), "in a circle", "10");
   expect_refused(finger("<mimic joint=\"trun\"/>"), "'trun', which is not there", "13");
   expect_refused(replaced(small_arm(), "<limit lower=\"-1\" upper=\"1\" effort=\"10\" velocity=\"2\"/>", ""),
                  "no <limit>", "6");

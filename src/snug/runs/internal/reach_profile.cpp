@@ -41,12 +41,13 @@ struct ArmLengths {
 };
 ArmLengths find_lengths(const robot::ArmModel& arm) {
   const robot::Joint& first = arm.joints.front();
-  const Vector3 p_BS = arm.joints.size() > 1 ? Vector3(first.X_SJ * arm.joints[1].X_SJ.p) : first.X_SJ.p;
+  const Vector3 p_BS = arm.moving_count() > 1 ? Vector3(first.X_SJ * arm.moving(1).joint.X_SJ.p) : first.X_SJ.p;
   ArmLengths lengths{(p_BS - first.X_SJ.p).head<2>().norm(), p_BS.z(), arm.X_SE.p.norm()};
-  for (std::size_t i = 2; i < arm.joints.size(); ++i) {
-    lengths.longest += arm.joints[i].X_SJ.p.norm();
-    if (arm.joints[i].kind == robot::JointKind::Prismatic)
-      lengths.longest += std::max(std::abs(arm.joints[i].lower), std::abs(arm.joints[i].upper));
+  for (std::size_t i = 2; i < arm.moving_count(); ++i) {
+    const robot::Joint& joint = arm.moving(i).joint;
+    lengths.longest += joint.X_SJ.p.norm();
+    if (joint.kind == robot::JointKind::Prismatic)
+      lengths.longest += std::max(std::abs(joint.lower), std::abs(joint.upper));
   }
   return lengths;
 }
