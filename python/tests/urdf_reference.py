@@ -11,7 +11,7 @@ import pinocchio
 
 
 def poses(path, tool, joints, q):
-    model = pinocchio.buildModelFromUrdf(path)
+    model = pinocchio.buildModelFromUrdf(path, mimic=True)
     data, frame = model.createData(), model.getFrameId(tool, pinocchio.FrameType.BODY)
     found = []
     for values in q:
