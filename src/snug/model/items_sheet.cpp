@@ -11,6 +11,7 @@
 #include "snug/core/input_error.hpp"
 #include "snug/core/text.hpp"
 #include "snug/model/internal/orders_json.hpp"
+#include "snug/model/items_file.hpp"
 
 namespace snug::model {
 namespace {
@@ -441,6 +442,19 @@ ItemsSheet read_items_sheet(std::string_view text, const std::string& name, cons
   sheet.questions = open.questions();
   if (sheet.questions.empty()) sheet.orders = write_orders(table, answers, open.has_decimal_comma());
   return sheet;
+}
+
+std::string require_orders(const ItemsSheet& sheet, const std::string& name) {
+  if (!sheet.questions.empty()) {
+    const SheetQuestion& open = sheet.questions.front();
+    const std::string option = open.about == "decimal" ? "--decimal" : "--" + open.about + "-unit";
+    std::string choices;
+    for (const auto& [answer, meaning] : open.choices)
+      choices += (choices.empty() ? "" : ", ") + option + " " + answer + " (" + meaning + ")";
+    throw InputError(name, open.about, "a sheet that does not say it", choices);
+  }
+  (void)parse_orders_csv(sheet.orders, name);  // says where a number is none
+  return sheet.orders;
 }
 
 }  // namespace snug::model

@@ -47,5 +47,8 @@ struct ItemsSheet {
 /// is. Throws InputError with "name:line" for answers that are none, and where edges or mass have no column or one has
 /// two.
 [[nodiscard]] ItemsSheet read_items_sheet(std::string_view text, const std::string& name, const SheetAnswers& answers);
+/// The sheet's orders as CSV. Throws InputError for the first open question, with the options that answer it and what
+/// each would mean, and where a number is none.
+[[nodiscard]] std::string require_orders(const ItemsSheet& sheet, const std::string& name);
 
 }  // namespace snug::model

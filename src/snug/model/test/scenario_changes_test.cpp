@@ -1,0 +1,57 @@
+// What is said of a scenario for one run: applied in one order, said again as words, boxes left out by name.
+#include "snug/model/scenario_changes.hpp"
+
+#include <gtest/gtest.h>
+
+#include "snug/core/input_error.hpp"
+
+namespace snug::model {
+namespace {
+
+const std::filesystem::path kSource = SNUG_SOURCE_DIR;
+
+TEST(ScenarioChanges, AreAppliedAndSaidAgainAsWords) {
+  ScenarioChanges changes;
+  EXPECT_FALSE(changes.any());
+  changes.set = {"seed=77"};
+  changes.container = "400x300x200";
+  changes.items = {"orders"};
+  EXPECT_TRUE(changes.any());
+  using Words = std::vector<std::pair<std::string, std::string>>;
+  EXPECT_EQ(words_of(changes), (Words{{"--items", "orders"}, {"--container", "400x300x200"}, {"--set", "seed=77"}}));
+  const SourcedScenario loaded =
+      load_changed(kSource / "scenarios/box-demonstrator.yaml", changes, [](const std::string& name) {
+        EXPECT_EQ(name, "orders");
+        return (kSource / "scenarios/orders-example.csv").string();
+      });
+  EXPECT_EQ(loaded.scenario.seed, 77U);
+  EXPECT_NEAR(find_container(loaded.scenario, loaded.scenario.target)->inner_size.z(), 0.2, 1e-12);
+  ASSERT_EQ(loaded.ends.size(), 2U);
+  EXPECT_LT(loaded.ends[0], loaded.ends[1]);
+  EXPECT_EQ(loaded.ends[1], loaded.scenario.parcels.size());
+}
+
+TEST(RequireParcel, NamesTheNearest) {
+  const Scenario scenario = load_scenario(kSource / "scenarios/box-demonstrator.yaml");
+  const std::string id = scenario.parcels.front().id;
+  EXPECT_EQ(require_parcel(scenario, id, "--parcel").id, id);
+  EXPECT_THROW((void)require_parcel(scenario, id + "x", "--parcel"), InputError);
+}
+
+TEST(LeaveOut, TakesBoxesOutOfOneSequenceAndNamesTheNearest) {
+  Scenario scenario = load_scenario(kSource / "scenarios/box-demonstrator.yaml");
+  const Sequence before = scenario.sequences.front();
+  const std::string box = before.items[1].parcel;
+  leave_out(scenario, before.name, {box});
+  EXPECT_EQ(scenario.sequences.front().items.size(), before.items.size() - 1);
+  EXPECT_NE(scenario.sequences.front().items[1].parcel, box);
+  try {
+    leave_out(scenario, before.name, {box + "x"});
+    FAIL() << "there is no such box";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("nearest is '"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace snug::model
