@@ -127,4 +127,15 @@ std::vector<LoadProblem> problems_of(const std::vector<model::OrderLine>& lines,
   return problems;
 }
 
+int drop_load_limits(std::vector<model::OrderLine>& lines) {
+  int limited = 0;
+  for (model::OrderLine& line : lines) {
+    if (!line.handling.no_stack && !line.handling.max_load) continue;
+    limited += line.count;
+    line.handling.no_stack = false;
+    line.handling.max_load.reset();
+  }
+  return limited;
+}
+
 }  // namespace snug::packing

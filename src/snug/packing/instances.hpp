@@ -21,4 +21,7 @@ namespace snug::packing {
 [[nodiscard]] std::vector<LoadProblem> problems_of(const std::vector<model::OrderLine>& lines,
                                                    const Vector3& container);
 
+/// Takes the limits of load out of orders; how many boxes had some.
+int drop_load_limits(std::vector<model::OrderLine>& lines);
+
 }  // namespace snug::packing

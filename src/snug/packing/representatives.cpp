@@ -153,4 +153,14 @@ model::Sequence draw_sequence(const model::Scenario& scenario, const std::string
   return sequence;
 }
 
+model::Sequence draw_order(const model::Scenario& scenario, const std::string& name, std::uint64_t seed) {
+  if (model::find_sequence(scenario, name) != nullptr) {
+    throw InputError("command line", "random order", "a scenario with a sequence " + name, "a name of its own");
+  }
+  SequenceSettings settings;
+  settings.repeat = 0.0;
+  settings.all = true;
+  return draw_sequence(scenario, name, settings, Rng(seed).split("sequence " + name));
+}
+
 }  // namespace snug::packing

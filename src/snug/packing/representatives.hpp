@@ -47,5 +47,7 @@ struct SequenceSettings {
 };
 [[nodiscard]] model::Sequence draw_sequence(const model::Scenario& scenario, const std::string& name,
                                             const SequenceSettings& settings, Rng rng);
+/// Every box of the scenario in an order drawn by seed and name. Throws InputError where a sequence has this name.
+[[nodiscard]] model::Sequence draw_order(const model::Scenario& scenario, const std::string& name, std::uint64_t seed);
 
 }  // namespace snug::packing
