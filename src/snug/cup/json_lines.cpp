@@ -2,9 +2,11 @@
 #include "snug/cup/json_lines.hpp"
 
 #include <cmath>
+#include <istream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "snug/core/input_error.hpp"
 #include "snug/cup/internal/line_reader.hpp"
 #include "snug/cup/law.hpp"
 #include "snug/cup/statics.hpp"
@@ -35,6 +37,18 @@ ordered_json begin_answer(const LineReader& line) {
   ordered_json answer = ordered_json::object();
   if (const auto id = line.content().find("id"); id != line.content().end()) answer["id"] = *id;
   return answer;
+}
+
+constexpr std::size_t kLongestLine = 65536;  // a question with all its digits has some 1500
+
+/// Like std::getline, but of a line that does not end only a little more than is allowed.
+bool read_line(std::istream& input, std::string& line) {
+  line.clear();
+  for (int c = input.get(); c != std::char_traits<char>::eof(); c = input.get()) {
+    if (c == '\n' || line.size() > kLongestLine) return true;
+    line += static_cast<char>(c);
+  }
+  return !line.empty();
 }
 
 }  // namespace
@@ -90,6 +104,20 @@ std::string settle_json_line(std::string_view line, int line_number, std::string
   answer["load_fraction"] = result.load_fraction;
   answer["min_tangent_eig"] = result.smallest_eigenvalue;
   return answer.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+void answer_json_lines(std::istream& input, const std::string& source, AnswerLine answer,
+                       const std::function<void(const std::string&)>& take) {
+  std::string line;
+  for (int number = 1; read_line(input, line); ++number) {
+    if (line.size() > kLongestLine) {
+      throw InputError(source + ":" + std::to_string(number), "",
+                       "a line of more than " + std::to_string(kLongestLine) + " bytes",
+                       "one JSON object on each line");
+    }
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    take(answer(line, number, source));
+  }
 }
 
 }  // namespace snug::cup

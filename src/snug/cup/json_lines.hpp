@@ -1,6 +1,8 @@
 // Questions to the cup model as JSON lines: what `snug cup evaluate` and `snug cup settle` read and print.
 #pragma once
 
+#include <functional>
+#include <iosfwd>
 #include <string>
 #include <string_view>
 
@@ -15,5 +17,12 @@ namespace snug::cup {
 /// (m/s^2 along -Wz, 9.81 when absent); answers with E_R_S, E_o_S, stable, status, residual, bend_deg, iterations,
 /// load_fraction and min_tangent_eig (see SettleResult). Throws InputError as above.
 [[nodiscard]] std::string settle_json_line(std::string_view line, int line_number, std::string_view source);
+
+/// One of these.
+using AnswerLine = std::string (*)(std::string_view line, int line_number, std::string_view source);
+/// Hands the answer of each line that is not blank to `take`, as it comes. Throws InputError as above, and for a line
+/// of more than 64 KiB.
+void answer_json_lines(std::istream& input, const std::string& source, AnswerLine answer,
+                       const std::function<void(const std::string&)>& take);
 
 }  // namespace snug::cup
