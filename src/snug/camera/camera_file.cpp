@@ -1,6 +1,7 @@
 // CameraFile: what a file beside a frame says of the camera that took it: optics, unit, axes, pose.
 #include "snug/camera/camera_file.hpp"
 
+#include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -382,6 +383,20 @@ std::optional<std::filesystem::path> find_camera_file(const std::filesystem::pat
     if (found) return found;
   }
   return std::nullopt;
+}
+
+model::CameraParams choose_camera(const model::Scenario& scenario, const std::optional<std::string>& name,
+                                  const std::string& source) {
+  if (scenario.cameras.empty())
+    throw InputError(source, "cameras", "none", "a scenario with cameras; --scenario names another one");
+  if (!name) return scenario.cameras.front();
+  if (const model::CameraParams* camera = model::find_camera(scenario, *name)) return *camera;
+  std::vector<std::string> names;
+  for (const model::CameraParams& camera : scenario.cameras) names.push_back(camera.name);
+  const std::string_view nearest = find_nearest(*name, names);
+  throw InputError("command line", "--camera", "'" + *name + "'",
+                   fmt::format("one of {}{}", fmt::join(names, ", "),
+                               nearest.empty() ? "" : fmt::format(", nearest is '{}'", nearest)));
 }
 
 }  // namespace snug::camera

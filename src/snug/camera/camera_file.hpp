@@ -6,6 +6,7 @@
 #include <string>
 
 #include "snug/model/camera_params.hpp"
+#include "snug/model/scenario.hpp"
 
 namespace snug::camera {
 
@@ -45,5 +46,10 @@ struct CameraFile {
 /// The file that speaks for a frame: NAME.json, .yaml or .yml beside NAME.png, else camera.json, .yaml or .yml in the
 /// same folder; none when there is none. Throws InputError where two could be meant.
 [[nodiscard]] std::optional<std::filesystem::path> find_camera_file(const std::filesystem::path& frame);
+
+/// The camera of a scenario that a user names; the first where none is named. Throws InputError for a scenario
+/// (`source`) without cameras and for an unknown name.
+[[nodiscard]] model::CameraParams choose_camera(const model::Scenario& scenario, const std::optional<std::string>& name,
+                                                const std::string& source);
 
 }  // namespace snug::camera

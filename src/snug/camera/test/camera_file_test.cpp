@@ -115,5 +115,22 @@ TEST(CameraFile, IsFoundBesideTheFrameAndNeverGuessed) {
   EXPECT_THROW((void)find_camera_file(folder / "f.png"), InputError);
 }
 
+TEST(ChooseCamera, IsTheFirstOrTheOneThatIsNamed) {
+  model::Scenario scenario;
+  EXPECT_THROW((void)choose_camera(scenario, {}, "cell.yaml"), InputError) << "a scenario without cameras";
+  scenario.cameras = {model::make_camera("ideal"), model::make_camera("ideal")};
+  scenario.cameras[0].name = "tote";
+  scenario.cameras[1].name = "pick";
+  EXPECT_EQ(choose_camera(scenario, {}, "cell.yaml").name, "tote");
+  EXPECT_EQ(choose_camera(scenario, "pick", "cell.yaml").name, "pick");
+  try {
+    (void)choose_camera(scenario, "pik", "cell.yaml");
+    FAIL() << "there is no such camera";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("one of tote, pick, nearest is 'pick'"), std::string::npos)
+        << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace snug::camera

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "snug/camera/loss.hpp"
+#include "snug/camera/truth_text.hpp"
 
 namespace snug::camera {
 namespace {
@@ -255,6 +258,17 @@ TEST(Render, GivesTheSameBytesAtAnyNumberOfThreads) {
   EXPECT_EQ(one.frame, three.frame);
   EXPECT_EQ(one.truth.label, three.truth.label);
   EXPECT_NE(one.frame.depth, render(scene, camera, draw, 2, 1).frame.depth);
+}
+
+TEST(TruthText, CountsThePixelsOfEachBodyAndThePointsOfAll) {
+  const RenderedFrame shot = render(wall(0.9), ideal_camera(), {}, 1);
+  const auto json = nlohmann::json::parse(format_truth(shot, 2.5, 1));
+  EXPECT_EQ(json.at("time_s"), 2.5);
+  EXPECT_EQ(count_points(shot.frame), 400 * 300);
+  EXPECT_EQ(json.at("points"), 400 * 300);
+  EXPECT_EQ(json.at("bodies").at(0).at("name"), "wall");
+  EXPECT_EQ(json.at("bodies").at(0).at("pixels"), 400 * 300);
+  EXPECT_EQ(json.at("true_camera_pose").at("quat_wxyz").at(0), 1.0);
 }
 
 }  // namespace
