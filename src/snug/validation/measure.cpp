@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 
@@ -308,6 +309,10 @@ std::string recording_name(const std::string& date, int minutes) {
                      clock.minutes().count(), clock.seconds().count());
 }
 
+nlohmann::ordered_json clock_as_json(const ClockTruth& clock) {
+  return {{"offset_s", clock.offset}, {"rate_ppm", 1e6 * clock.rate}};
+}
+
 }  // namespace
 
 VirtualMeasurement measure(const SimulatedRun& run, const model::Sensors& sensors, const MeasureOptions& options) {
@@ -332,6 +337,23 @@ VirtualMeasurement measure(const SimulatedRun& run, const model::Sensors& sensor
   recording.robot = measure_robot(run, sensors.encoders, rng.split("encoders"), truth);
   recording.objects = describe_objects(run);
   return result;
+}
+
+std::string format_json(const MeasureTruth& truth, const std::string& name) {
+  const Vector6 bias = as_vector(truth.bias);
+  const Quaternion quat(truth.X_MW.R);
+  const nlohmann::ordered_json json = {
+      {"name", name},
+      {"clocks",
+       {{"motion_capture", clock_as_json(truth.motion_capture)},
+        {"force_torque", clock_as_json(truth.force_torque)},
+        {"encoders", clock_as_json(truth.encoders)}}},
+      {"bias", {{"force_N", {bias[0], bias[1], bias[2]}}, {"torque_Nm", {bias[3], bias[4], bias[5]}}}},
+      {"X_MW",
+       {{"p", {truth.X_MW.p.x(), truth.X_MW.p.y(), truth.X_MW.p.z()}},
+        {"quat_wxyz", {quat.w(), quat.x(), quat.y(), quat.z()}}}},
+      {"lost_bodies", truth.lost_bodies}};
+  return json.dump();
 }
 
 }  // namespace snug::validation

@@ -46,4 +46,7 @@ struct VirtualMeasurement {
 [[nodiscard]] VirtualMeasurement measure(const SimulatedRun& run, const model::Sensors& sensors,
                                          const MeasureOptions& options);
 
+/// What was drawn for the recording `name`: clocks, bias, frame, lost bodies.
+[[nodiscard]] std::string format_json(const MeasureTruth& truth, const std::string& name);
+
 }  // namespace snug::validation

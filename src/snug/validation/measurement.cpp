@@ -2,7 +2,9 @@
 #include "snug/validation/measurement.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <string_view>
 
 #include "snug/core/input_error.hpp"
 #include "snug/core/units.hpp"
@@ -201,6 +203,33 @@ Measurement align(const SimulatedRun& run, const ArchiveRecording& recording, co
     measurement.clocks.push_back(make_clock("robot", simulated, measured, shifts.robot, false));
   }
   return measurement;
+}
+
+HandShifts parse_hand_shifts(const std::vector<std::string>& words) {
+  HandShifts shifts;
+  const std::vector<std::string> sources = {"mocap", "ft", "robot"};
+  std::optional<double>* const targets[] = {&shifts.motion_capture, &shifts.force_torque, &shifts.robot};
+  for (const std::string& word : words) {
+    const std::size_t sign = word.find('=');
+    const std::string source = word.substr(0, sign);
+    const std::string_view text =
+        sign == std::string::npos ? std::string_view() : std::string_view(word).substr(sign + 1);
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool is_number = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+    bool is_known = false;
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+      if (source != sources[i]) continue;
+      is_known = true;
+      *targets[i] = value;
+    }
+    const std::string_view nearest = find_nearest(source, sources);
+    if (!is_known || !is_number)
+      throw InputError("command line", "--shift", "'" + word + "'",
+                       "mocap=SECONDS, ft=SECONDS or robot=SECONDS" +
+                           (is_known || nearest.empty() ? "" : "; did you mean " + std::string(nearest) + "?"));
+  }
+  return shifts;
 }
 
 }  // namespace snug::validation

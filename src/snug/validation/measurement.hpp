@@ -16,6 +16,9 @@ struct HandShifts {
   std::optional<double> motion_capture, force_torque, robot;
 };
 
+/// Of words SOURCE=SECONDS, a source being mocap, ft or robot. Throws InputError with the nearest name.
+[[nodiscard]] HandShifts parse_hand_shifts(const std::vector<std::string>& words);
+
 /// How one source's clock was found, or why it was not.
 struct SourceClock {
   std::string source;  ///< "motion capture", "force/torque", "robot"

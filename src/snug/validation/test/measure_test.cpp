@@ -172,5 +172,18 @@ TEST(Measure, AnotherBodyChangesNothingForTheRest) {
   EXPECT_TRUE(are_same(track(measure(run, sensors, {}).recording, "Box030").poses, before));
 }
 
+TEST(MeasureTruth, HasClocksBiasAndFrameInItsJson) {
+  MeasureTruth truth;
+  truth.motion_capture = {.offset = 0.5, .rate = 2e-5};
+  truth.bias.torque = Vector3(0.0, 0.0, 0.1);
+  truth.lost_bodies = {"BOX001"};
+  const auto json = nlohmann::json::parse(format_json(truth, "Rec"));
+  EXPECT_EQ(json.at("name"), "Rec");
+  EXPECT_DOUBLE_EQ(json.at("clocks").at("motion_capture").at("rate_ppm").get<double>(), 20.0);
+  EXPECT_EQ(json.at("bias").at("torque_Nm").at(2), 0.1);
+  EXPECT_EQ(json.at("X_MW").at("quat_wxyz").at(0), 1.0);
+  EXPECT_EQ(json.at("lost_bodies").at(0), "BOX001");
+}
+
 }  // namespace
 }  // namespace snug::validation

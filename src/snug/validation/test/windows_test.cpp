@@ -7,6 +7,7 @@
 #include "scene.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/record/archive.hpp"
+#include "snug/validation/measurement.hpp"
 #include "snug/validation/validate.hpp"
 
 namespace snug::validation {
@@ -123,6 +124,15 @@ TEST(LoadWindows, OfAnotherSequenceAreNotReadButTheirRowsAreWhole) {
 TEST(LoadWindows, AreOfFiniteTimesThatGrow) {
   for (const char* row : {"Box013,nan,2", "Box013,1,inf", "Box013,1,1", "Box013,1,2s", "Box013,,2", "Box013,0x1,2"})
     EXPECT_THROW((void)read_windows(std::string("body,start_s,end_s\n") + row + "\n"), InputError) << row;
+}
+
+TEST(HandShifts, AreReadBySourceAndNamedWhereTheyAreNot) {
+  const HandShifts shifts = parse_hand_shifts({"mocap=0.35", "robot=-2"});
+  EXPECT_EQ(shifts.motion_capture, 0.35);
+  EXPECT_EQ(shifts.robot, -2.0);
+  EXPECT_FALSE(shifts.force_torque.has_value());
+  for (const char* word : {"mocap", "mocap=", "mocap=x", "mocap=nan", "mocap=1 ", "=1", "all=1"})
+    EXPECT_THROW((void)parse_hand_shifts({word}), InputError) << word;
 }
 
 }  // namespace
