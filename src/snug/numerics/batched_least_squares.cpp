@@ -273,6 +273,19 @@ class BatchedTermCost final : public ceres::CostFunction {
   std::size_t term_;
 };
 
+/// `has_own`: some term has unknowns of its own.
+ceres::Solver::Options solver_options(const BatchedOptions& options, bool has_own) {
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = has_own ? ceres::DENSE_SCHUR : ceres::DENSE_QR;
+  solver.num_threads = 1;
+  solver.logging_type = ceres::SILENT;
+  solver.max_num_iterations = options.max_iterations;
+  solver.function_tolerance = options.tolerance;
+  solver.parameter_tolerance = options.tolerance;
+  if (options.fixed_jacobian) solver.max_num_line_search_step_size_iterations = 3;
+  return solver;
+}
+
 }  // namespace
 
 BatchedResult solve_batched(const BatchedProblem& given, const BatchedOptions& options) {
@@ -305,19 +318,10 @@ BatchedResult solve_batched(const BatchedProblem& given, const BatchedOptions& o
     problem.SetParameterLowerBound(unknowns.data(), j, given.lower[j]);
     problem.SetParameterUpperBound(unknowns.data(), j, given.upper[j]);
   }
-  ceres::Solver::Options solver;
-  solver.linear_solver_type = count > given.start.size() ? ceres::DENSE_SCHUR : ceres::DENSE_QR;
+  ceres::Solver::Options solver = solver_options(options, count > given.start.size());
   solver.linear_solver_ordering.reset(ordering);
-  solver.num_threads = 1;
-  solver.logging_type = ceres::SILENT;
-  solver.max_num_iterations = options.max_iterations;
-  solver.function_tolerance = options.tolerance;
-  solver.parameter_tolerance = options.tolerance;
   StopWithoutGain stop;
-  if (options.fixed_jacobian) {
-    solver.callbacks.push_back(&stop);
-    solver.max_num_line_search_step_size_iterations = 3;
-  }
+  if (options.fixed_jacobian) solver.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
   BatchedResult result;

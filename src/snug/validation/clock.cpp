@@ -383,53 +383,8 @@ void apply(const BlockFit& change, ClockFit& fit) {
   for (std::size_t k = 0; k < fit.steps.size(); ++k) fit.steps[k].size += change.x[static_cast<Eigen::Index>(2 + k)];
 }
 
-/// Slips, one after the other, as long as one explains far more than chance; with them shift and rate anew.
-void find_steps(Comparison& comparison, const ClockOptions& options, ClockFit& fit) {
-  constexpr std::size_t kMostSteps = 5, kFewestBlocks = 8;
-  // Two numbers for each of some 50 places: a gain of 25 is chance in less than one of a thousand recordings.
-  constexpr double kGain = 25.0, kLeastSize = 5e-4;  // of chi-square; s
-  if (shifts_of(comparison, fit).size() < kFewestBlocks) return;
-  const ClockFit before = fit;
-  for (bool goes_on = true; goes_on && fit.steps.size() < kMostSteps;) {
-    goes_on = false;
-    const std::vector<BlockShift> shifts = shifts_of(comparison, fit);
-    const double scatter = scatter_of(shifts);
-    std::vector<double> times;
-    for (const ClockStep& step : fit.steps) times.push_back(step.time);
-    const double now = fit_blocks(shifts, times, scatter, fit.rate, options.usual_rate).chi2;
-    double gain = 0.0, size = 0.0, at = 0.0;
-    times.push_back(0.0);
-    for (std::size_t k = 1; k + 2 < shifts.size(); ++k) {
-      times.back() = shifts[k].time;
-      const BlockFit tried = fit_blocks(shifts, times, scatter, fit.rate, options.usual_rate);
-      if (now - tried.chi2 <= gain) continue;
-      gain = now - tried.chi2;
-      size = tried.x[tried.x.size() - 1];
-      at = shifts[k].time;
-    }
-    if (gain < kGain || std::abs(size) < kLeastSize) break;
-    goes_on = true;
-    fit.steps.push_back({at, 0.0, 0.0});
-    for (int round = 0; round < 3; ++round) {
-      comparison.centre(fit);
-      const std::vector<BlockShift> anew = shifts_of(comparison, fit);
-      times.back() = fit.steps.back().time;
-      apply(fit_blocks(anew, times, scatter_of(anew), fit.rate, options.usual_rate), fit);
-      fit.steps.back().time = place_step(comparison, fit, fit.steps.size() - 1);
-    }
-  }
-  if (fit.steps.empty()) return;
-  const auto too_small = [](const ClockStep& step) { return std::abs(step.size) < kLeastSize; };
-  // A ramp that no clock has can be cut into steps, too.
-  constexpr double kAnyRate = 1.0;
-  const std::vector<BlockShift> plain = shifts_of(comparison, before), stepped = shifts_of(comparison, fit);
-  const double scatter_then = scatter_of(stepped);
-  const bool is_ramp = fit_blocks(plain, {}, scatter_then, before.rate, kAnyRate).chi2 <
-                       fit_blocks(stepped, {}, scatter_then, fit.rate, options.usual_rate).chi2;
-  if (is_ramp || std::ranges::any_of(fit.steps, too_small) || std::abs(fit.rate) > options.highest_rate) {
-    fit = before;
-    return;
-  }
+/// Shift, rate and sizes of the steps anew, with their errors.
+void refine(Comparison& comparison, const ClockOptions& options, ClockFit& fit) {
   std::ranges::sort(fit.steps, {}, &ClockStep::time);
   std::vector<double> times;
   for (const ClockStep& step : fit.steps) times.push_back(step.time);
@@ -451,6 +406,62 @@ void find_steps(Comparison& comparison, const ClockOptions& options, ClockFit& f
     fit.steps[k].error = std::sqrt(few * last.covariance(at, at));
   }
   fit.correlation = comparison.products(fit).likeness();
+}
+
+constexpr double kLeastStep = 5e-4;  // s
+
+/// Whether steps are none: too small, or cut out of a ramp that no clock has.
+bool is_doubtful(const Comparison& comparison, const ClockOptions& options, const ClockFit& before,
+                 const ClockFit& fit) {
+  const auto too_small = [](const ClockStep& step) { return std::abs(step.size) < kLeastStep; };
+  constexpr double kAnyRate = 1.0;
+  const std::vector<BlockShift> plain = shifts_of(comparison, before), stepped = shifts_of(comparison, fit);
+  const double scatter = scatter_of(stepped);
+  const bool is_ramp = fit_blocks(plain, {}, scatter, before.rate, kAnyRate).chi2 <
+                       fit_blocks(stepped, {}, scatter, fit.rate, options.usual_rate).chi2;
+  return is_ramp || std::ranges::any_of(fit.steps, too_small) || std::abs(fit.rate) > options.highest_rate;
+}
+
+/// Slips, one after the other, as long as one explains far more than chance; with them shift and rate anew.
+void find_steps(Comparison& comparison, const ClockOptions& options, ClockFit& fit) {
+  constexpr std::size_t kMostSteps = 5, kFewestBlocks = 8;
+  // Two numbers for each of some 50 places: a gain of 25 is chance in less than one of a thousand recordings.
+  constexpr double kGain = 25.0;  // of chi-square
+  if (shifts_of(comparison, fit).size() < kFewestBlocks) return;
+  const ClockFit before = fit;
+  for (bool goes_on = true; goes_on && fit.steps.size() < kMostSteps;) {
+    goes_on = false;
+    const std::vector<BlockShift> shifts = shifts_of(comparison, fit);
+    const double scatter = scatter_of(shifts);
+    std::vector<double> times;
+    for (const ClockStep& step : fit.steps) times.push_back(step.time);
+    const double now = fit_blocks(shifts, times, scatter, fit.rate, options.usual_rate).chi2;
+    double gain = 0.0, size = 0.0, at = 0.0;
+    times.push_back(0.0);
+    for (std::size_t k = 1; k + 2 < shifts.size(); ++k) {
+      times.back() = shifts[k].time;
+      const BlockFit tried = fit_blocks(shifts, times, scatter, fit.rate, options.usual_rate);
+      if (now - tried.chi2 <= gain) continue;
+      gain = now - tried.chi2;
+      size = tried.x[tried.x.size() - 1];
+      at = shifts[k].time;
+    }
+    if (gain < kGain || std::abs(size) < kLeastStep) break;
+    goes_on = true;
+    fit.steps.push_back({at, 0.0, 0.0});
+    for (int round = 0; round < 3; ++round) {
+      comparison.centre(fit);
+      const std::vector<BlockShift> anew = shifts_of(comparison, fit);
+      times.back() = fit.steps.back().time;
+      apply(fit_blocks(anew, times, scatter_of(anew), fit.rate, options.usual_rate), fit);
+      fit.steps.back().time = place_step(comparison, fit, fit.steps.size() - 1);
+    }
+  }
+  if (fit.steps.empty()) return;
+  if (is_doubtful(comparison, options, before, fit))
+    fit = before;
+  else
+    refine(comparison, options, fit);
 }
 
 /// Clocks are expected to run nearly alike; blocks that err together know less than so many that do not.
