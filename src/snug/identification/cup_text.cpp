@@ -7,24 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "snug/core/units.hpp"
+#include "snug/identification/internal/parameter_json.hpp"
 
 namespace snug::identification {
 namespace {
 
 using nlohmann::ordered_json;
-
-ordered_json as_json(const std::vector<Parameter>& parameters) {
-  ordered_json list = ordered_json::array();
-  for (const Parameter& parameter : parameters) {
-    list.push_back({{"name", parameter.name},
-                    {"value", parameter.value},
-                    {"standard_error", parameter.standard_error},
-                    {"unit", parameter.unit},
-                    {"verdict", name_of(parameter.verdict)}});
-    if (!parameter.advice.empty()) list.back()["record_instead"] = parameter.advice;
-  }
-  return list;
-}
 
 void add_errors(ordered_json& json, double chi2_per_dof, int degrees_of_freedom, const HeldBackError& held_back) {
   json["chi2_per_dof"] = chi2_per_dof;
@@ -79,7 +67,7 @@ std::string indices(const std::vector<int>& list) {
 
 std::string format_json(const StiffnessFit& fit, const HeldBackError& held_back, bool noise_is_given) {
   ordered_json json;
-  json["parameters"] = as_json(fit.parameters);
+  json["parameters"] = internal::describe_parameters(fit.parameters);
   add_errors(json, fit.chi2_per_dof, fit.degrees_of_freedom, held_back);
   json["method"] = name_of(fit.method);
   json["wrench"] = name_of(fit.wrench);
@@ -135,14 +123,14 @@ std::string format_table(const StiffnessFit& fit, const HeldBackError& held_back
 
 std::string format_json(const DampingFit& fit, const HeldBackError& held_back, bool noise_is_given) {
   ordered_json json;
-  json["parameters"] = as_json(fit.parameters);
+  json["parameters"] = internal::describe_parameters(fit.parameters);
   add_errors(json, fit.chi2_per_dof, fit.degrees_of_freedom, held_back);
   json["noise_is_given"] = noise_is_given;
   json["start"] = fit.start == ReleaseStart::Moving ? "moving" : "rest";
   json["releases_agree"] = fit.releases_agree;
   for (const ReleaseFit& release : fit.releases)
     json["releases"].push_back({{"name", release.name},
-                                {"parameters", as_json(release.parameters)},
+                                {"parameters", internal::describe_parameters(release.parameters)},
                                 {"chi2_per_dof", release.chi2_per_dof},
                                 {"residual_position_mm", 1e3 * release.position},
                                 {"residual_rotation_deg", kDegrees * release.rotation},

@@ -40,6 +40,33 @@ Vector6 wrench_at(const Pose& X_EA, const Vector6& wrench_E) {
   return (Vector6() << X_EA.R.transpose() * force, X_EA.R.transpose() * torque).finished();
 }
 
+/// Of the sums over a window of samples.
+struct WindowSums {
+  double span = 0.0;  ///< s
+  std::size_t samples = 0;
+  double force = 0.0;         ///< length of the sum of forces
+  double lever_square = 0.0;  ///< sum of phi^2 times the sensor's distance^2, times dt^2
+};
+struct SumVariances {
+  double force = 0.0, torque = 0.0;
+};
+
+/// What the noise of the samples does to the sums: integrals of phi^2 and of its second derivative squared.
+SumVariances variances_of(const PayloadSettings& settings, const WindowSums& sums) {
+  const Vector3& g = settings.gravity_W;
+  const double span = sums.span, step = span / static_cast<double>(sums.samples - 1);
+  const double of_wrench = 3.0 / 8.0 * span * step, of_pose = 2.0 * std::pow(kPi, 4) / std::pow(span, 3) * step;
+  const MeasurementNoise& noise = settings.noise;
+  const double mass = sums.force / (0.5 * span * g.norm());  // near enough for the size of noise
+  const double shake = std::pow(mass * noise.position, 2) + std::pow(mass * kLever * noise.rotation, 2);
+  const double turning = std::pow(mass * g.norm() * noise.rotation, 2);
+  return {kOverlap * ((std::pow(noise.force, 2) + turning) * of_wrench + shake * of_pose),
+          kOverlap *
+              ((std::pow(noise.torque, 2) + kLever * kLever * turning + std::pow(mass * g.norm() * noise.position, 2)) *
+                   of_wrench +
+               2.0 / 3.0 * sums.lever_square * std::pow(noise.force, 2) + kLever * kLever * shake * of_pose)};
+}
+
 }  // namespace
 
 Pose lip_under_wrench(const Matrix6& K, const CupFrames& frames, const Vector6& wrench_E) {
@@ -121,25 +148,13 @@ void PayloadEstimator::balance() {
     torque.middleCols<3>(1) -= phi_first * (skew(p) * skew(w) - skew(v)) * middle;
     torque.middleCols<6>(4) -= phi_first * middle * inertia_columns(middle.transpose() * w);
   }
-  // What the noise of the samples does to the sums: integrals of phi^2 and of its second derivative squared.
-  const double step = span / static_cast<double>(instants_.size() - 1);
-  const double of_wrench = 3.0 / 8.0 * span * step, of_pose = 2.0 * std::pow(kPi, 4) / std::pow(span, 3) * step;
-  const MeasurementNoise& noise = settings_.noise;
-  const double mass = force_sum.norm() / (0.5 * span * g.norm());  // near enough for the size of noise
-  const double shake = std::pow(mass * noise.position, 2) + std::pow(mass * kLever * noise.rotation, 2);
-  const double turning = std::pow(mass * g.norm() * noise.rotation, 2);
-  const double force_variance = kOverlap * ((std::pow(noise.force, 2) + turning) * of_wrench + shake * of_pose);
-  const double torque_variance =
-      kOverlap *
-      ((std::pow(noise.torque, 2) + kLever * kLever * turning + std::pow(mass * g.norm() * noise.position, 2)) *
-           of_wrench +
-       2.0 / 3.0 * lever_square * std::pow(noise.force, 2) + kLever * kLever * shake * of_pose);
+  const SumVariances variances = variances_of(settings_, {span, instants_.size(), force_sum.norm(), lever_square});
   const auto add_rows = [&](const Eigen::MatrixXd& rows, const Eigen::VectorXd& sum, double variance) {
     information_ += numerics::transposed_product(rows, rows) / variance;
     weighted_ += numerics::transposed_product(rows, sum) / variance;
   };
-  add_rows(force, force_sum, force_variance);
-  add_rows(torque, torque_sum, torque_variance);
+  add_rows(force, force_sum, variances.force);
+  add_rows(torque, torque_sum, variances.torque);
   ++windows_;
 }
 

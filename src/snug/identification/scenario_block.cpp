@@ -82,4 +82,23 @@ std::string format_cup_block(const std::vector<BlockEntry>& stiffness, const std
   return text;
 }
 
+std::vector<BlockEntry> block_entries(const StiffnessFit& fit) {
+  if (fit.parameters.size() == 5) return block_entries(fit.parameters, 'k');
+  const auto parameter = [&](const char* entry, const char* name, double value) {
+    for (const Parameter& one : fit.parameters) {
+      if (one.name != entry) continue;
+      Parameter renamed = one;
+      renamed.name = name;
+      renamed.value = value;
+      return renamed;
+    }
+    return Parameter{};
+  };
+  const model::CupElasticity& five = fit.elasticity;
+  return block_entries({parameter("k_x_x", "k_lat", five.lateral), parameter("k_z_z", "k_ax", five.axial),
+                        parameter("k_rx_rx", "k_bend", five.bend), parameter("k_rz_rz", "k_tors", five.torsion),
+                        parameter("k_x_ry", "c", five.coupling)},
+                       'k');
+}
+
 }  // namespace snug::identification

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "snug/identification/parameter.hpp"
+#include "snug/identification/stiffness.hpp"
 #include "snug/model/cup_params.hpp"
 
 namespace snug::identification {
@@ -27,5 +28,8 @@ struct BlockEntry {
 
 /// Entries of parameters named k_lat, k_ax, k_bend, k_tors, c or d_lat, d_ax, d_bend, d_tors, d_c; others are left out.
 [[nodiscard]] std::vector<BlockEntry> block_entries(const std::vector<Parameter>& parameters, char letter);
+
+/// The five numbers of a fit. Those of a fit with 21 have the errors of the entries that they are read from.
+[[nodiscard]] std::vector<BlockEntry> block_entries(const StiffnessFit& fit);
 
 }  // namespace snug::identification

@@ -1,9 +1,15 @@
 // Virtual experiments: rest by cup::settle, swings by simulate_swing.
 #include "snug/identification/virtual_experiments.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "snug/core/check.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/cup/law.hpp"
 #include "snug/identification/free_swing.hpp"
 #include "snug/identification/internal/at_rest.hpp"
 
@@ -106,6 +112,49 @@ void add_noise(Release& release, const MeasurementNoise& noise, Rng& rng) {
   release.noise = noise;
   release.noise_is_given = true;
   for (Pose& X_ES : release.X_ES) X_ES = with_noise(X_ES, noise, rng);
+}
+
+PluckDirection pluck_direction_of(std::string_view name) {
+  constexpr std::pair<std::string_view, PluckDirection> kDirections[] = {{"axial", PluckDirection::Axial},
+                                                                         {"lateral", PluckDirection::Lateral},
+                                                                         {"bend", PluckDirection::Bend},
+                                                                         {"torsion", PluckDirection::Torsion}};
+  for (const auto& [known, direction] : kDirections)
+    if (name == known) return direction;
+  SNUG_CHECK(false, "a direction that there is not");
+  return PluckDirection::Axial;
+}
+
+bool is_turn(PluckDirection direction) {
+  return direction == PluckDirection::Bend || direction == PluckDirection::Torsion;
+}
+
+Pluck plan_pluck(const model::CupParams& cup, const Vector3& size, const SpatialInertia& box, PluckDirection direction,
+                 std::optional<double> amplitude) {
+  Pluck pluck;
+  const Matrix3 R_SP = Vector3(1.0, -1.0, -1.0).asDiagonal();
+  pluck.load_S = {box.mass, R_SP * (box.com - Vector3(0.0, 0.0, 0.5 * size.z())),
+                  R_SP * box.inertia * R_SP.transpose()};
+  pluck.frames = frames_of(cup);
+  pluck.K = cup::as_matrix(cup.stiffness);
+  pluck.D = cup::as_matrix(cup.damping);
+  pluck.direction = direction;
+  pluck.amplitude = amplitude.value_or(is_turn(direction) ? 0.1 : 0.004);
+  constexpr double kMostPull = 0.03, kMostTurn = 0.6;  // m, rad: a cup of 50 mm, a law that ends at 45 degrees
+  if (pluck.amplitude > (is_turn(direction) ? kMostTurn : kMostPull))
+    throw InputError("command line", "--amplitude", fmt::format("{}", pluck.amplitude),
+                     is_turn(direction) ? "0.6 rad or less" : "0.03 m or less");
+  return pluck;
+}
+
+std::vector<Release> make_plucks(const Pluck& pluck, int count, const MeasurementNoise& noise, std::uint64_t seed) {
+  Rng rng = Rng(seed).split("pluck");
+  std::vector<Release> releases;
+  for (int i = 0; i < count; ++i) {
+    releases.push_back(make_pluck(pluck));
+    add_noise(releases.back(), noise, rng);
+  }
+  return releases;
 }
 
 }  // namespace snug::identification

@@ -1,6 +1,9 @@
 // Virtual experiments: what sensors would record of a cup whose numbers are known.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "snug/core/rng.hpp"
@@ -26,6 +29,17 @@ struct Pluck {
   double rate = 360.0;       ///< Hz, of the record
   double duration = 1.5;     ///< s
 };
+/// Of "axial", "lateral", "bend" or "torsion" (checked).
+[[nodiscard]] PluckDirection pluck_direction_of(std::string_view name);
+/// Whether it is an angle that is pulled.
+[[nodiscard]] bool is_turn(PluckDirection direction);
+/// A box of `size` (m; its inertia about its own middle, Z up) held by the middle of its upper face: Sz points into it.
+/// `amplitude`: m or rad, by default 0.004 or 0.1. Throws InputError for one that no cup of this kind bears.
+[[nodiscard]] Pluck plan_pluck(const model::CupParams& cup, const Vector3& size, const SpatialInertia& box,
+                               PluckDirection direction, std::optional<double> amplitude);
+/// The same pluck again and again, as sensors with this noise would record it.
+[[nodiscard]] std::vector<Release> make_plucks(const Pluck& pluck, int count, const MeasurementNoise& noise,
+                                               std::uint64_t seed);
 /// Without noise. InputError when the cup cannot hold the load.
 [[nodiscard]] Release make_pluck(const Pluck& pluck);
 
