@@ -150,6 +150,10 @@ model::Scenario draw_scenario(const model::Scenario& scenario, const std::string
   return drawn;
 }
 
+model::Scenario draw_run(const model::Scenario& scenario, const std::string& sequence, int draw) {
+  return draw_scenario(scenario, sequence, Rng(scenario.seed).split("monte_carlo " + std::to_string(draw - 1)));
+}
+
 void stiffen(model::Scenario& scenario, double factor) {
   const auto scale = [factor](model::ContactParams& params) {
     if (params.stiffness) *params.stiffness *= factor;

@@ -20,6 +20,9 @@ namespace snug::cell {
 /// differ by a millimetre do not turn a square box. Without an aligner nothing is drawn of it.
 [[nodiscard]] model::Scenario draw_scenario(const model::Scenario& scenario, const std::string& sequence, Rng rng);
 
+/// The cell of run `draw`, from 1, of the repeated runs of the scenario's seed.
+[[nodiscard]] model::Scenario draw_run(const model::Scenario& scenario, const std::string& sequence, int draw);
+
 /// Scales the stiffness of every compliant contact.
 void stiffen(model::Scenario& scenario, double factor);
 

@@ -105,5 +105,11 @@ TEST(DrawScenario, ArrivalsThatAreFixedStandAsTheyDidForAToolFromAbove) {
   }
 }
 
+TEST(DrawRun, IsTheSameForItsNumberAndAnotherForEach) {
+  const auto first_mass = [](int draw) { return draw_run(demonstrator(), "1", draw).parcels.front().inertia.mass; };
+  EXPECT_EQ(first_mass(1), first_mass(1));
+  EXPECT_NE(first_mass(1), first_mass(2));
+}
+
 }  // namespace
 }  // namespace snug::cell
