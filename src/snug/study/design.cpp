@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "snug/core/hash.hpp"
+#include "snug/core/input_error.hpp"
 #include "snug/core/rng.hpp"
 #include "snug/study/sobol.hpp"
 
@@ -104,6 +106,22 @@ std::string command_of(const Study& study, const Row& row) {
   std::string line = "snug";
   for (const std::string& word : words_of(study, row)) line += " " + quoted(word);
   return line;
+}
+
+std::pair<std::uint64_t, std::uint64_t> parse_chunks(const std::string& words, const Study& study) {
+  const char* const end = words.data() + words.size();
+  std::uint64_t first = 0, last = 0;
+  auto [at, error] = std::from_chars(words.data(), end, first);
+  last = first;
+  if (error == std::errc{} && at != end && *at == '-') {
+    const auto rest = std::from_chars(at + 1, end, last);
+    at = rest.ptr;
+    error = rest.ec;
+  }
+  if (error != std::errc{} || at != end || first > last || last >= study.chunks())
+    throw InputError("command line", "--chunks", "'" + words + "'",
+                     fmt::format("A or A-B, from 0 to {}", study.chunks() - 1));
+  return {first, last};
 }
 
 }  // namespace snug::study

@@ -90,6 +90,9 @@ struct ListDesign {
 /// with pleasure.
 [[nodiscard]] int default_chunk(std::uint64_t rows);
 
+/// First and last of "12" or "3-7". Throws InputError for what is none, or beyond the study's chunks.
+[[nodiscard]] std::pair<std::uint64_t, std::uint64_t> parse_chunks(const std::string& words, const Study& study);
+
 struct Row {
   std::uint64_t index = 0, point = 0;
   int repeat = 0;

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "snug/core/csv_cell.hpp"
+#include "snug/core/input_error.hpp"
 
 namespace snug::study {
 namespace {
@@ -269,6 +270,13 @@ void write_hdf5(const Study& study, const Folder& folder, OutputFile file) {
   }
   if (H5Fclose(h5) < 0) throw OutputError(file.path().string(), "HDF5 cannot write it");
   file.publish();
+}
+
+void write_table(const Study& study, const Folder& folder, const std::string& path, OutputFile file) {
+  const std::string ending = std::filesystem::path(path).extension().string();
+  if (ending == ".csv") return write_csv(study, folder, std::move(file));
+  if (ending == ".h5" || ending == ".hdf5") return write_hdf5(study, folder, std::move(file));
+  throw InputError("command line", "-o", "'" + path + "'", "a name that ends in .csv or .h5");
 }
 
 }  // namespace snug::study

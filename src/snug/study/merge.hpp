@@ -39,4 +39,7 @@ void write_csv(const Study& study, const Folder& folder, OutputFile file);
 /// design, result, clock or outcome.
 void write_hdf5(const Study& study, const Folder& folder, OutputFile file);
 
+/// One of these by the ending of `path`: .csv, .h5 or .hdf5. Throws InputError for another.
+void write_table(const Study& study, const Folder& folder, const std::string& path, OutputFile file);
+
 }  // namespace snug::study

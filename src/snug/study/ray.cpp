@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "snug/core/write_file.hpp"
+
 namespace snug::study {
 namespace {
 
@@ -98,6 +100,15 @@ std::string ray_program(const Study& study, const Folder& folder, const ArrayPla
              literal(study.name), literal(address), literal(std::filesystem::current_path().string()), literal(command),
              ranges) +
          kRayProgram;
+}
+
+std::filesystem::path write_tasks(const Study& study, const Folder& folder, const ArrayPlan& plan,
+                                  const std::string& program, const std::string& file,
+                                  const std::optional<std::string>& address) {
+  std::filesystem::path script = folder.path() / (address ? "ray-tasks.py" : "array.sh");
+  write_file(OutputFile(script), address ? ray_program(study, folder, plan, program, file, *address)
+                                         : array_script(study, folder, plan, program, file));
+  return script;
 }
 
 }  // namespace snug::study

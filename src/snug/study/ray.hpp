@@ -1,6 +1,8 @@
 // Ray: a study as tasks of a Ray cluster; which runs when and where is Ray's.
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 
 #include "snug/study/slurm.hpp"
@@ -14,5 +16,11 @@ namespace snug::study {
 /// has a result, 1 when rows were left out, 2 when there is no Ray or no cluster.
 [[nodiscard]] std::string ray_program(const Study& study, const Folder& folder, const ArrayPlan& plan,
                                       const std::string& program, const std::string& file, const std::string& address);
+
+/// Writes what hands the ranges of `plan` to Ray at `address`, or without one to Slurm, into the study's folder:
+/// ray-tasks.py or array.sh. Its path. Throws OutputError.
+[[nodiscard]] std::filesystem::path write_tasks(const Study& study, const Folder& folder, const ArrayPlan& plan,
+                                                const std::string& program, const std::string& file,
+                                                const std::optional<std::string>& address);
 
 }  // namespace snug::study

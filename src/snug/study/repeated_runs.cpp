@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "snug/study/factor_runs.hpp"
 #include "snug/study/row_values.hpp"
 
 namespace snug::study {
@@ -23,6 +24,24 @@ RepeatedRun read_repeated_run(const RowResult& result) {
   run.state_hash = values.word("state_hash");
   run.failure = run.state_hash.empty() ? result.error : values.word("failure");
   return run;
+}
+
+std::vector<RepeatedRun> repeat_runs(const std::string& scenario, const std::vector<std::string>& options, int count,
+                                     int processes, const Verb& verb) {
+  FactorRuns factor{
+      .name = "--monte-carlo",
+      .verb = "simulate",
+      .scenario = scenario,
+      .options = options,
+      .option = "--draw",
+      .values = {},
+      .outputs = {{"filling_degree_percent"}, {"boxes"}, {"repick_offset_worst_mm"}, {"state_hash"}, {"failure"}},
+      .processes = std::min(processes, count)};
+  for (int draw = 1; draw <= count; ++draw) factor.values.push_back(std::to_string(draw));
+  std::vector<RepeatedRun> runs;
+  run_factor(factor, verb, "runs",
+             [&](const RowResult& result, const std::string& /*said*/) { runs.push_back(read_repeated_run(result)); });
+  return runs;
 }
 
 PackedSpread find_spread(const std::vector<RepeatedRun>& runs) {

@@ -26,6 +26,10 @@ struct PackedSpread {
 
 /// Of a row that `snug simulate --json` has made. A row without its state failed: then with what was said.
 [[nodiscard]] RepeatedRun read_repeated_run(const RowResult& result);
+/// `simulate --draw 1` to `count`, `processes` at a time; they do not depend on it. `options`: words that all runs
+/// have. Throws InputError for words that cannot be used, and std::runtime_error where processes were killed.
+[[nodiscard]] std::vector<RepeatedRun> repeat_runs(const std::string& scenario, const std::vector<std::string>& options,
+                                                   int count, int processes, const Verb& verb);
 /// Zeros of no runs.
 [[nodiscard]] PackedSpread find_spread(const std::vector<RepeatedRun>& runs);
 

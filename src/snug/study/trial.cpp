@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
@@ -265,6 +266,35 @@ std::vector<std::string> warnings_of(const session::SessionResult& result) {
     if (!item.sends.empty() && !item.is_packed()) warnings.push_back(item.id + " " + session::describe(item));
   }
   return warnings;
+}
+
+simulated_plant::LiveRecordingOptions recording_of(const simulated_plant::SimulatedPlantOptions& plant,
+                                                   const std::string& agent, const std::string& version,
+                                                   OutputFile& file, const std::string& address) {
+  const std::string& robot = plant.simulation.robot;
+  simulated_plant::LiveRecordingOptions recording;
+  recording.file = &file;
+  recording.version = version;
+  nlohmann::ordered_json settings{{"cup", "phases"},
+                                  {"controller", motion::name_of(plant.simulation.tracking)},
+                                  {"corrections", "none"},
+                                  {"robot", robot.empty() ? "none" : robot}};
+  if (address.empty())
+    settings["plant_seed"] = plant.seed;
+  else
+    settings["plant"] = address;
+  settings["agent"] = agent;
+  recording.settings_json = settings.dump();
+  return recording;
+}
+
+simulated_plant::TakenUp take_up(const session::ResumePoint& point) {
+  simulated_plant::TakenUp begin{point.time, point.item_count(), {}};
+  for (const session::event::Standing& box : point.boxes) {
+    const std::vector<model::ParcelId>& items = point.started().items;
+    begin.boxes.emplace_back(items[box.item.slot()], box.X_WP);
+  }
+  return begin;
 }
 
 }  // namespace snug::study

@@ -62,6 +62,14 @@ struct TrialFiles {
                               const simulated_plant::SimulatedPlantOptions& plant, const TrialProgress& progress = {},
                               const TrialFiles& files = {});
 
+/// What the recording of a plant says of how it was made. `address`: of a plant that is elsewhere; `version`: of the
+/// program; `file` is taken.
+[[nodiscard]] simulated_plant::LiveRecordingOptions recording_of(const simulated_plant::SimulatedPlantOptions& plant,
+                                                                 const std::string& agent, const std::string& version,
+                                                                 OutputFile& file, const std::string& address = {});
+/// The plant as the session before left it.
+[[nodiscard]] simulated_plant::TakenUp take_up(const session::ResumePoint& point);
+
 /// What the session did, as events of a recording: what it predicted, troubles and remedies, obstacles.
 [[nodiscard]] std::vector<record::Event> events_of(const session::SessionResult& result);
 /// What went wrong in the end, for whoever looks at its recording: boxes that were sent and are not packed, each with

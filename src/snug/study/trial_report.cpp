@@ -376,4 +376,15 @@ std::string format_plan(const session::SessionResult& result, bool is_complete) 
   return plan.dump(2) + "\n";
 }
 
+std::string find_failure(const session::SessionResult& result, const MonteCarloResult& repeated, bool wants_program) {
+  if (!result.failure.text.empty()) return result.failure.text;
+  const std::vector<std::string> rejected = session::rejected_items(result);
+  if (!rejected.empty()) return fmt::format("the load is not as it has to be: {}", fmt::join(rejected, "; "));
+  if (result.stop_reason == session::StopReason::NoFrame && !result.stopped.empty()) return result.stopped;
+  if (repeated.failed > 0)
+    return fmt::format("{} of {} repeated runs did not reach their end", repeated.failed, repeated.count);
+  if (wants_program && result.program.waypoints.empty()) return "nothing was packed: no program, no recording";
+  return {};
+}
+
 }  // namespace snug::study

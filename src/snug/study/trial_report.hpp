@@ -8,6 +8,9 @@
 
 namespace snug::study {
 
+/// Empty, or why the run failed. `wants_program`: a program or a recording was asked for.
+[[nodiscard]] std::string find_failure(const session::SessionResult& result, const MonteCarloResult& repeated,
+                                       bool wants_program);
 /// What is packed with what, and the head of the table. `address`: of a plant that is served; empty: a simulated one.
 [[nodiscard]] std::string format_pack_head(const std::string& sequence, const session::SessionOptions& session,
                                            const simulated_plant::SimulatedPlantOptions& plant,
