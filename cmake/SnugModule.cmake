@@ -226,7 +226,7 @@ function(snug_module name)
 endfunction()
 
 # snug_app_library(name [COLD] SOURCES ... DEPENDS modules... LINK libraries... TESTS files...): a library of the programs, from the folder
-# apps/<name>: snug::<name> as modules are, but not installed, and its includes start at the project's folder: "apps/<name>/file.hpp".
+# it is called in: snug::<name> as modules are, but not installed, and its includes start at the project's folder: "bench/figures/file.hpp".
 function(snug_app_library name)
   cmake_parse_arguments(ARG "COLD" "" "SOURCES;DEPENDS;LINK;TESTS" ${ARGN})
   add_library(snug_${name} STATIC ${ARG_SOURCES})

@@ -17,15 +17,15 @@ SOUND = {
     "src/snug/middle/middle.hpp": '#include "snug/low/low.hpp"\n',
     "src/snug/high/CMakeLists.txt": "snug_module(high HEADERS high.hpp DEPENDS middle)\n",
     "src/snug/high/high.hpp": '#include "snug/middle/middle.hpp"\n#include "snug/low/low.hpp"\n',
-    "apps/count/CMakeLists.txt": "snug_app_library(count SOURCES count.cpp DEPENDS middle)\n",
-    "apps/count/count.hpp": '#include "snug/low/low.hpp"\n',
-    "apps/count/internal/secret.hpp": "// Secret.\n",
+    "bench/count/CMakeLists.txt": "snug_app_library(count SOURCES count.cpp DEPENDS middle)\n",
+    "bench/count/count.hpp": '#include "snug/low/low.hpp"\n',
+    "bench/count/internal/secret.hpp": "// Secret.\n",
     "apps/snug/CMakeLists.txt": "add_executable(snug main.cpp)\n",
     "apps/snug/main.cpp": '#include "apps/snug/send/send.hpp"\n#include "snug/low/low.hpp"\n',
     "apps/snug/words/CMakeLists.txt": "snug_verb(words SOURCES words.cpp DEPENDS low)\n",
     "apps/snug/words/words.hpp": '#include "snug/low/low.hpp"\n',
     "apps/snug/send/CMakeLists.txt": "snug_verb(send\n  SOURCES send.cpp\n  USES words\n  DEPENDS high count)\n",
-    "apps/snug/send/send.hpp": '#include "apps/snug/words/words.hpp"\n#include "apps/count/count.hpp"\n',
+    "apps/snug/send/send.hpp": '#include "apps/snug/words/words.hpp"\n#include "bench/count/count.hpp"\n',
     "apps/snug/send/send.cpp": '#include "apps/snug/send/send.hpp"\n#include "snug/high/high.hpp"\n',
     "python/CMakeLists.txt": "add_library(core)\ntarget_link_libraries(core PRIVATE snug::middle fmt::fmt)\n",
     "python/src/module.cpp": '#include "handles.hpp"\n#include "snug/middle/middle.hpp"\n',
@@ -87,7 +87,7 @@ class CheckModules(unittest.TestCase):
         self.assert_refused({"src/snug/high/high.cpp": '#include "snug/low/internal/secret.hpp"\n'},
                             "high.cpp:1:", "internal headers are for module 'low' only")
         self.assert_refused({"apps/snug/main.cpp": '#include "snug/low/internal/secret.hpp"\n'}, "main.cpp:1:")
-        self.assert_refused({"apps/snug/send/send.cpp": '#include "apps/count/internal/secret.hpp"\n'},
+        self.assert_refused({"apps/snug/send/send.cpp": '#include "bench/count/internal/secret.hpp"\n'},
                             "send.cpp:1:", "internal headers are for module 'count' only")
 
     def test_refuses_relative_ways_into_another_module(self):

@@ -3,7 +3,7 @@
 
 What declares its dependencies is a unit:
   src/snug/<module>     snug_module(<module> ... DEPENDS modules... TEST_DEPENDS modules that only its tests may include)
-  apps/<library>        snug_app_library(<library> ... DEPENDS modules...)
+  bench/<folder>        snug_app_library(<library> ... DEPENDS modules...)
   apps/snug/<folder>    snug_verb(<folder> ... USES folders beside it... DEPENDS modules and libraries...)
   python                target_link_libraries(... snug::<module>...) in python/CMakeLists.txt
 A file may include its own unit, those that it declares and what those may use; headers under internal/ only from the same unit. Files
@@ -55,7 +55,7 @@ def declared_units(root):
     """Units by name; a folder of the program is named by its path, a module or library by what DEPENDS calls it."""
     units = {}
     for path in [*sorted(root.glob("src/snug/*/CMakeLists.txt")), *sorted(root.glob("apps/**/CMakeLists.txt")),
-                 *root.glob("python/CMakeLists.txt")]:
+                 *sorted(root.glob("bench/**/CMakeLists.txt")), *root.glob("python/CMakeLists.txt")]:
         folder = path.parent
         place = str(folder.relative_to(root))
         for function, words, line in calls_of(path):
@@ -148,7 +148,7 @@ class Checker:
 
     def check_include(self, path, unit, quote, target):
         parts = Path(target).parts
-        if parts[0] not in ("snug", "apps"):
+        if parts[0] not in ("snug", "apps", "bench"):
             if quote == '"':
                 yield from self.check_beside(path, unit, target)
             return

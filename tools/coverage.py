@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""coverage.py BUILD: which lines of src and apps the tests reached, by module, from the counts that gcov reads.
+"""coverage.py BUILD: which lines of src, apps and bench/figures the tests reached, by module, from the counts that gcov reads.
 
 BUILD is a folder built with --coverage in which the tests ran. A line counts as reached when any object that holds it
 (a header is in many) ran it. Prints one row for each module, and the ten files with the most lines missed.
@@ -40,7 +40,7 @@ def module_of(path):
         return None
     if parts[:2] == ("src", "snug"):
         return parts[2]
-    return "/".join(parts[:2]) if parts[:1] == ("apps",) else None
+    return "/".join(parts[:2]) if parts[:1] == ("apps",) or parts[:2] == ("bench", "figures") else None
 
 
 def main(arguments):

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "apps/bench/drawn_scenes.hpp"
+#include "bench/figures/drawn_scenes.hpp"
 #include "snug/core/rng.hpp"
 
 namespace snug::peers {

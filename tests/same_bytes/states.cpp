@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/bench/drawn_scenes.hpp"
+#include "bench/figures/drawn_scenes.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/model/scenario.hpp"
 #include "snug/motion/program_csv.hpp"

@@ -1,26 +1,22 @@
 // bench: how fast and how accurate the physics is, beside its targets.
 #include "apps/snug/command_line/verbs.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
 
-#include "apps/bench/bench.hpp"
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/ranges.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/shipped.hpp"
-#include "apps/snug/command_line/verb.hpp"
 #include "apps/snug/study/study.hpp"
+#include "bench/figures/figure_text.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/study/factor_runs.hpp"
 #include "snug/study/row_values.hpp"
-#include "snug/study/run.hpp"
 
 namespace snug::app {
 namespace {
@@ -36,97 +32,39 @@ std::filesystem::path find_scenarios() {
   return std::filesystem::is_directory("scenarios/bench") ? "scenarios" : shipped_folder() / "scenarios";
 }
 
-std::string as_json(const std::vector<bench::Figure>& figures) {
-  nlohmann::ordered_json document = {{"results", nlohmann::ordered_json::array()}};
-  for (const bench::Figure& figure : figures) {
-    document["results"].push_back({{"name", figure.name},
-                                   {"value", figure.value},
-                                   {"unit", figure.unit},
-                                   {"target", figure.target},
-                                   {"ok", figure.ok}});
-    if (!figure.skipped.empty()) document["results"].back()["skipped"] = figure.skipped;
-  }
-  const model::SolverSettings solver;
-  document["settings"] = {{"tolerance_m_s", solver.tolerance},
-                          {"max_sweeps", solver.max_sweeps},
-                          {"position_slop_m", solver.position_slop}};
-  return document.dump(2) + "\n";
-}
-
-bench::Figure read_figure(const nlohmann::ordered_json& json) {
-  return {
-      json.at("name").get<std::string>(), json.at("value").is_null() ? std::nan("") : json.at("value").get<double>(),
-      json.at("unit").get<std::string>(), json.at("target").get<std::string>(),
-      json.at("ok").get<bool>(),          json.value("skipped", std::string())};
-}
-
-std::string as_table(const std::vector<bench::Figure>& figures) {
-  std::string text = fmt::format("{:<34} {:>12} {:<6} {:<10} {}\n", "figure", "value", "unit", "target", "met");
-  for (const bench::Figure& figure : figures) {
-    const std::string value = figure.skipped.empty() ? fmt::format("{:.4g}", figure.value) : "-";
-    const std::string met = !figure.skipped.empty() ? "skipped: " + figure.skipped
-                            : figure.target.empty() ? ""
-                            : figure.ok             ? "yes"
-                                                    : "NO";
-    text += fmt::format("{:<34} {:>12} {:<6} {:<10} {}\n", figure.name, value, figure.unit, figure.target, met);
-  }
-  const model::SolverSettings solver;
-  return text + fmt::format("\nsolver of every scenario: tolerance {} m/s, at most {} sweeps, slop {} m\n",
-                            solver.tolerance, solver.max_sweeps, solver.position_slop);
-}
-
 /// Each scene by itself in a process of its own, one after the other: none measures what another left behind.
 std::vector<bench::Figure> run_scenes(const std::vector<std::string>& scenes, const BenchOptions& options) {
-  study::Study study;
-  study.name = study.source = study.verb = "bench";
-  study.options = {"--drops", std::to_string(options.drops)};
-  study.seed_option.clear();
-  study.factors = {{.name = "scene", .option = "--only", .key = {}, .values = scenes}};
-  study.point_count = scenes.size();
-  study.outputs = {{"results"}};
-  study.chunk = static_cast<int>(scenes.size());
   std::vector<bench::Figure> figures;
-  study::RunSettings settings;
-  settings.tell = [&](const study::RowResult& result, const std::string& said) {
+  const auto tell = [&](const study::RowResult& result, const std::string& said) {
     std::fputs(said.c_str(), stderr);
-    const std::string& scene = scenes[result.row];
     const nlohmann::ordered_json list = study::RowValues(result).list("results");
     if (list.empty() && result.exit_code != kBadInput)  // else there is no such figure here
-      throw std::runtime_error("bench " + scene + ": " + result.error);
-    for (const auto& json : list) figures.push_back(read_figure(json));
+      throw std::runtime_error("bench " + scenes[result.row] + ": " + result.error);
+    for (const auto& json : list) figures.push_back(bench::read_figure(json));
   };
-  const study::RunSummary summary = study::run_study(
-      study, [](const std::vector<std::string>& words) { return run_row(words); }, settings);
-  if (summary.left_out > 0) throw std::runtime_error("processes of the bench were killed");
-  const std::string only = options.only.value_or("");
-  std::erase_if(figures, [&](const auto& figure) { return !figure.name.starts_with(only); });
+  study::run_factor(
+      {.name = "bench",
+       .verb = "bench",
+       .scenario = {},
+       .options = {"--drops", std::to_string(options.drops)},
+       .option = "--only",
+       .values = scenes,
+       .outputs = {{"results"}}},
+      [](const std::vector<std::string>& words) { return run_row(words); }, "bench", tell);
+  std::erase_if(figures, [&](const auto& figure) { return !figure.name.starts_with(options.only.value_or("")); });
   return figures;
 }
 
 int run_bench(const BenchOptions& options) {
-  bench::BenchOptions bench;
-  const std::filesystem::path scenarios = find_scenarios();
-  bench.scenes = scenarios / "bench";
-  bench.scenario = scenarios / "box-demonstrator.yaml";
-  bench.sensors = scenarios / "sensors/demonstrator.yaml";
-  bench.program = scenarios.parent_path() / "../shared/data/waypoints/poses1real.csv";
-  bench.corrections = "seq1";
-  bench.cup_data = scenarios.parent_path() / "../shared/data/cup";
-  bench.instances = scenarios.parent_path() / "../shared/data/packing";
-  if (!std::filesystem::exists(bench.program)) {
-    bench.program = "out/sequence-1.csv";  // what `make demo` leaves
-    bench.corrections.clear();
-  }
-  bench.hard_scenes = scenarios.parent_path() / "../shared/data/scenes";
+  bench::BenchOptions bench = bench::find_inputs(find_scenarios());
   bench.drop_scenes = options.drops;
   bench.only = options.only.value_or("");
   const std::vector<std::string> scenes = bench::bench_scenes(bench.only);
   const std::vector<bench::Figure> figures = scenes.size() > 1 ? run_scenes(scenes, options) : bench::run_bench(bench);
   if (figures.empty())
     throw InputError("command line", "--only", "'" + bench.only + "'", "the start of a figure's name");
-  print(options.json ? as_json(figures) : as_table(figures));
-  const bool all_met = std::all_of(figures.begin(), figures.end(), [](const auto& figure) { return figure.ok; });
-  return all_met ? kSuccess : kRunFailed;
+  print(options.json ? bench::format_json(figures) : bench::format_table(figures));
+  return std::ranges::all_of(figures, &bench::Figure::ok) ? kSuccess : kRunFailed;
 }
 
 }  // namespace

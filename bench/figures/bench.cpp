@@ -1,5 +1,5 @@
 // Bench: figures of all parts, each beside its target.
-#include "apps/bench/bench.hpp"
+#include "bench/figures/bench.hpp"
 
 #include <fmt/format.h>
 
@@ -9,16 +9,16 @@
 #include <limits>
 #include <string_view>
 
-#include "apps/bench/internal/arm_bench.hpp"
-#include "apps/bench/internal/camera_bench.hpp"
-#include "apps/bench/internal/click_bench.hpp"
-#include "apps/bench/internal/identification_bench.hpp"
-#include "apps/bench/internal/motion_bench.hpp"
-#include "apps/bench/internal/packing_bench.hpp"
-#include "apps/bench/internal/pile_bench.hpp"
-#include "apps/bench/internal/robot_figures.hpp"
-#include "apps/bench/internal/scene_bench.hpp"
-#include "apps/bench/internal/validation_bench.hpp"
+#include "bench/figures/internal/arm_bench.hpp"
+#include "bench/figures/internal/camera_bench.hpp"
+#include "bench/figures/internal/click_bench.hpp"
+#include "bench/figures/internal/identification_bench.hpp"
+#include "bench/figures/internal/motion_bench.hpp"
+#include "bench/figures/internal/packing_bench.hpp"
+#include "bench/figures/internal/pile_bench.hpp"
+#include "bench/figures/internal/robot_figures.hpp"
+#include "bench/figures/internal/scene_bench.hpp"
+#include "bench/figures/internal/validation_bench.hpp"
 #include "snug/core/units.hpp"
 #include "snug/motion/program_csv.hpp"
 #include "snug/runs/run.hpp"
@@ -165,6 +165,23 @@ bool is_wanted(std::string_view scene, const std::string& only) {
 }
 
 }  // namespace
+
+BenchOptions find_inputs(const std::filesystem::path& scenarios) {
+  const std::filesystem::path data = scenarios.parent_path() / "../shared/data";
+  BenchOptions bench;
+  bench.scenes = scenarios / "bench";
+  bench.scenario = scenarios / "box-demonstrator.yaml";
+  bench.sensors = scenarios / "sensors/demonstrator.yaml";
+  bench.program = data / "waypoints/poses1real.csv";
+  bench.corrections = "seq1";
+  bench.cup_data = data / "cup";
+  bench.instances = data / "packing";
+  bench.hard_scenes = data / "scenes";
+  if (std::filesystem::exists(bench.program)) return bench;
+  bench.program = "out/sequence-1.csv";
+  bench.corrections.clear();
+  return bench;
+}
 
 std::vector<std::string> bench_scenes(const std::string& only) {
   std::vector<std::string> scenes;

@@ -1,5 +1,6 @@
 // Tests of the bench: its own overlap test, and the figures that do not depend on the machine.
-#include "apps/bench/bench.hpp"
+#include "bench/figures/bench.hpp"
+#include "bench/figures/figure_text.hpp"
 
 #include <gtest/gtest.h>
 
@@ -70,6 +71,37 @@ TEST(Bench, SaysThatInstancesAreSkippedWhenTheyAreNotThere) {
   ASSERT_EQ(figures.size(), 1U);
   EXPECT_FALSE(figures[0].skipped.empty());
   EXPECT_TRUE(figures[0].ok);
+}
+
+TEST(Bench, InputsAreInTheFolderOfScenarios) {
+  const BenchOptions inputs = find_inputs("place/scenarios");
+  EXPECT_EQ(inputs.scenes, "place/scenarios/bench");
+  EXPECT_EQ(inputs.instances, "place/../shared/data/packing");
+  EXPECT_EQ(inputs.program, "out/sequence-1.csv") << "where there is no program of the demonstrator";
+  EXPECT_EQ(inputs.corrections, "");
+}
+
+TEST(FigureText, ComesBackFromItsJson) {
+  const Figure met{"s3.error", 0.5, "%", "<= 1", true, {}},
+      skipped{"packing.load", std::nan(""), "%", "", true, "no folder"};
+  const auto json = nlohmann::ordered_json::parse(format_json({met, skipped}));
+  ASSERT_EQ(json.at("results").size(), 2U);
+  EXPECT_EQ(json.at("settings").at("tolerance_m_s"), model::SolverSettings{}.tolerance);
+  const Figure back = read_figure(json.at("results").at(0));
+  EXPECT_EQ(back.name, met.name);
+  EXPECT_EQ(back.value, met.value);
+  EXPECT_EQ(back.target, met.target);
+  EXPECT_TRUE(back.ok);
+  EXPECT_TRUE(std::isnan(read_figure(json.at("results").at(1)).value));
+  EXPECT_EQ(read_figure(json.at("results").at(1)).skipped, "no folder");
+}
+
+TEST(FigureText, TableSaysWhatMissedItsTarget) {
+  const std::string table = format_table(
+      {{"a", 1.0, "us", "<= 2", true, {}}, {"b", 3.0, "us", "<= 2", false, {}}, {"c", 0.0, "", "", true, "not here"}});
+  EXPECT_NE(table.find("<= 2       yes\n"), std::string::npos) << table;
+  EXPECT_NE(table.find("<= 2       NO\n"), std::string::npos) << table;
+  EXPECT_NE(table.find("skipped: not here\n"), std::string::npos) << table;
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // measure_validation: what a virtual experiment with known parameters says of predictions, and what validating costs.
 #pragma once
 
-#include "apps/bench/bench.hpp"
+#include "bench/figures/bench.hpp"
 #include "snug/validation/validate.hpp"
 
 namespace snug::bench::internal {

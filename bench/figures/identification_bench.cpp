@@ -1,5 +1,5 @@
 // measure_identification: reference data, and virtual experiments with a known truth.
-#include "apps/bench/internal/identification_bench.hpp"
+#include "bench/figures/internal/identification_bench.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <array>
 #include <cmath>
 
-#include "apps/bench/internal/cpu_time.hpp"
-#include "apps/bench/internal/planted_bench.hpp"
+#include "bench/figures/internal/cpu_time.hpp"
+#include "bench/figures/internal/planted_bench.hpp"
 #include "snug/cup/law.hpp"
 #include "snug/identification/damping.hpp"
 #include "snug/identification/stiffness.hpp"

@@ -1,5 +1,5 @@
 // measure_motions: how long it takes to plan one item's motion.
-#include "apps/bench/internal/motion_bench.hpp"
+#include "bench/figures/internal/motion_bench.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/bench/internal/cpu_time.hpp"
+#include "bench/figures/internal/cpu_time.hpp"
 #include "snug/cell/aligner_feed.hpp"
 #include "snug/cell/joint_pace.hpp"
 #include "snug/cell/simulation.hpp"

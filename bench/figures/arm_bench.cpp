@@ -1,11 +1,11 @@
 // measure_arm: what kinematics and inverse of the shipped arm cost.
-#include "apps/bench/internal/arm_bench.hpp"
+#include "bench/figures/internal/arm_bench.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <vector>
 
-#include "apps/bench/internal/cpu_time.hpp"
+#include "bench/figures/internal/cpu_time.hpp"
 #include "snug/core/rng.hpp"
 #include "snug/robot/dynamics.hpp"
 #include "snug/robot/inverse.hpp"

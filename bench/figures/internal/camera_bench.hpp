@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "apps/bench/bench.hpp"
-#include "apps/bench/internal/tote_scenes.hpp"
+#include "bench/figures/bench.hpp"
+#include "bench/figures/internal/tote_scenes.hpp"
 
 namespace snug::bench::internal {
 

@@ -1,5 +1,5 @@
 // Pile bench: how large islands and random drops are solved, and what a second thread gains.
-#include "apps/bench/internal/pile_bench.hpp"
+#include "bench/figures/internal/pile_bench.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -11,9 +11,9 @@
 #include <iterator>
 #include <string_view>
 
-#include "apps/bench/drawn_scenes.hpp"
-#include "apps/bench/internal/cpu_time.hpp"
-#include "apps/bench/internal/scene_bench.hpp"
+#include "bench/figures/drawn_scenes.hpp"
+#include "bench/figures/internal/cpu_time.hpp"
+#include "bench/figures/internal/scene_bench.hpp"
 #include "snug/cell/scene.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/units.hpp"

@@ -1,5 +1,5 @@
 // ToteScene: planned by an agent, put down, simulated until they rest.
-#include "apps/bench/internal/tote_scenes.hpp"
+#include "bench/figures/internal/tote_scenes.hpp"
 
 #include <algorithm>
 #include <array>

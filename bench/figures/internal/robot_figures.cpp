@@ -1,12 +1,12 @@
 // Figures of the robot: cost of a controller tick, of a program through the joints, of a check.
-#include "apps/bench/internal/robot_figures.hpp"
+#include "bench/figures/internal/robot_figures.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 
-#include "apps/bench/internal/scene_bench.hpp"
+#include "bench/figures/internal/scene_bench.hpp"
 #include "snug/motion/program_csv.hpp"
 #include "snug/runs/corrected.hpp"
 #include "snug/runs/program_check.hpp"

@@ -1,5 +1,5 @@
 // Scene bench: how accurate and how fast the physics is on the scenes S1 to S6 and on fields of columns.
-#include "apps/bench/internal/scene_bench.hpp"
+#include "bench/figures/internal/scene_bench.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "apps/bench/internal/cpu_time.hpp"
+#include "bench/figures/internal/cpu_time.hpp"
 #include "snug/cell/scene.hpp"
 #include "snug/core/check.hpp"
 #include "snug/core/units.hpp"

@@ -1,6 +1,6 @@
 // measure_planted: numbers put into virtual experiments of a program, and what identification makes of their
 // recordings.
-#include "apps/bench/internal/planted_bench.hpp"
+#include "bench/figures/internal/planted_bench.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/bench/internal/scene_bench.hpp"
+#include "bench/figures/internal/scene_bench.hpp"
 #include "snug/identification/scene_fit.hpp"
 #include "snug/model/number_edit.hpp"
 #include "snug/model/sensors.hpp"

@@ -1,7 +1,7 @@
 // measure_identification: how near the identified cup comes to the truth, how honest its errors are, and what it costs.
 #pragma once
 
-#include "apps/bench/bench.hpp"
+#include "bench/figures/bench.hpp"
 
 namespace snug::bench::internal {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "apps/bench/bench.hpp"
+#include "bench/figures/bench.hpp"
 
 namespace snug::bench::internal {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/bench/bench.hpp"
+#include "bench/figures/bench.hpp"
 
 namespace snug::bench::internal {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "apps/bench/internal/click_bench.hpp"
+#include "bench/figures/internal/click_bench.hpp"
 #include "snug/click/client.hpp"
 #include "snug/core/check.hpp"
 #include "snug/served_cell/server.hpp"

@@ -1,5 +1,5 @@
 // measure_camera: frames of boxes at rest with label truth, estimated from depth alone.
-#include "apps/bench/internal/camera_bench.hpp"
+#include "bench/figures/internal/camera_bench.hpp"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <numbers>
 
-#include "apps/bench/internal/cpu_time.hpp"
-#include "apps/bench/internal/scene_bench.hpp"
+#include "bench/figures/internal/cpu_time.hpp"
+#include "bench/figures/internal/scene_bench.hpp"
 #include "snug/box_estimation/estimate.hpp"
 #include "snug/camera/cast.hpp"
 #include "snug/camera/render.hpp"

@@ -1,9 +1,9 @@
 // measure_packing: how long deciding takes and what it plans; what loading makes of public instances.
-#include "apps/bench/internal/packing_bench.hpp"
+#include "bench/figures/internal/packing_bench.hpp"
 
 #include <algorithm>
 
-#include "apps/bench/internal/cpu_time.hpp"
+#include "bench/figures/internal/cpu_time.hpp"
 #include "snug/packing/agent.hpp"
 #include "snug/packing/instances.hpp"
 

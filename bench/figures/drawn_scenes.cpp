@@ -1,5 +1,5 @@
 // Drawn scenes: piles of dropped boxes and random drops of all kinds of bodies, written as scenario files are.
-#include "apps/bench/drawn_scenes.hpp"
+#include "bench/figures/drawn_scenes.hpp"
 
 #include <fmt/format.h>
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <system_error>
 
-#include "apps/bench/internal/cpu_time.hpp"
-#include "apps/bench/internal/validation_bench.hpp"
+#include "bench/figures/internal/cpu_time.hpp"
+#include "bench/figures/internal/validation_bench.hpp"
 #include "snug/core/rng.hpp"
 #include "snug/model/sensors.hpp"
 #include "snug/motion/program_csv.hpp"

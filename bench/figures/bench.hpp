@@ -31,6 +31,10 @@ struct BenchOptions {
   std::string only;                   ///< figures whose scene starts so; empty: all
 };
 
+/// The inputs in a folder of scenarios that comes with the program; what is not shipped with it is looked for beside
+/// its project, and a program, where it is not there, where `make demo` leaves one.
+[[nodiscard]] BenchOptions find_inputs(const std::filesystem::path& scenarios);
+
 /// Largest overlap of two boxes by the fifteen axes of the separating-axis test, m; 0 when apart. Independent of the
 /// collision code that it measures.
 [[nodiscard]] double box_overlap(const Vector3& half_a, const Pose& X_WA, const Vector3& half_b, const Pose& X_WB);
