@@ -14,9 +14,8 @@
 #include "apps/snug/command_line/command_line.hpp"
 #include "apps/snug/command_line/command_words.hpp"
 #include "apps/snug/command_line/outputs.hpp"
-#include "apps/snug/command_line/verb.hpp"
+#include "apps/snug/command_line/verbs.hpp"
 #include "apps/snug/command_line/version.hpp"
-#include "apps/snug/verbs.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/text.hpp"
 

@@ -1,9 +1,5 @@
 // add_verbs: every verb that this program offers, in the order of --help.
-#include "apps/snug/verbs.hpp"
-
 #include "apps/snug/command_line/verbs.hpp"
-#include "apps/snug/items/items.hpp"
-#include "apps/snug/ui/ui.hpp"
 
 namespace snug::app {
 

@@ -12,7 +12,6 @@
 
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
-#include "apps/snug/command_line/verb.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/record/archive.hpp"
 #include "snug/validation/log_table.hpp"

@@ -28,8 +28,6 @@ struct NominalArm {
 };
 
 [[nodiscard]] NominalArm load_nominal(const CalibrateOptions& options);
-/// Index of a link; InputError that names the option and the nearest link.
-[[nodiscard]] int require_link(const robot::ArmModel& arm, const std::string& option, const std::string& name);
 
 /// The parts of the verb.
 void add_calibrate_kinematics(const Verb& verb);

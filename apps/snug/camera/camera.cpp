@@ -1,62 +1,54 @@
 // camera: a recording's bodies in the camera's picture, written with what is true of it.
-#include "apps/snug/camera/camera.hpp"
-#include "apps/snug/command_line/ranges.hpp"
 #include "apps/snug/command_line/verbs.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
-#include "apps/snug/camera/live_view.hpp"
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/scenario_options.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/shipped.hpp"
-#include "apps/snug/common/choose_camera.hpp"
 #include "apps/snug/common/recordings.hpp"
+#include "snug/camera/camera_file.hpp"
 #include "snug/camera/frame_file.hpp"
-#include "snug/camera/render.hpp"
+#include "snug/camera/truth_text.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/text.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/record/reader.hpp"
+#include "snug/remote_runs/watched_run.hpp"
 
 namespace snug::app {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::ordered_json;
 
-ordered_json as_json(const Pose& X) {
-  const Quaternion quat(X.R);
-  return {{"position_m", {X.p.x(), X.p.y(), X.p.z()}}, {"quat_wxyz", {quat.w(), quat.x(), quat.y(), quat.z()}}};
-}
+struct CameraOptions {
+  std::string recording;                ///< with `click`: a scenario
+  std::string output;                   ///< .png, .ply or .h5
+  std::optional<std::string> scenario;  ///< instead of the recording's own
+  std::optional<std::string> camera;    ///< name; absent: the scenario's first
+  std::optional<double> time;           ///< s; absent: the end
+  std::optional<std::string> click;     ///< address of a served cell
+  std::optional<std::string> sequence;  ///< of a served cell; absent: the first
+  ScenarioChanges changes;              ///< with which it is served
+  ClientWords client;
+  bool without_robot = false;
+  std::optional<std::uint64_t> seed;  ///< of the camera's own errors; absent: the recording's
+  std::uint64_t shot = 1;
+  int threads = 1;
+  bool exact = false;  ///< without errors
+  bool json = false;
+};
 
-ordered_json describe(const camera::RenderedFrame& shot, double time) {
-  std::vector<int> pixels(shot.truth.names.size(), 0), points = pixels;
-  int all = 0;
-  for (std::size_t i = 0; i < shot.truth.label.values().size(); ++i) {
-    const std::int16_t label = shot.truth.label.values()[i];
-    const int has_point = shot.frame.depth.values()[i] > 0.0F ? 1 : 0;
-    all += has_point;
-    if (label < 0) continue;
-    ++pixels[static_cast<std::size_t>(label)];
-    points[static_cast<std::size_t>(label)] += has_point;
-  }
-  ordered_json json = {{"time_s", time},
-                       {"camera", ordered_json::parse(camera::format_camera(shot.frame.camera))},
-                       {"true_camera_pose", as_json(shot.truth.X_WC)},
-                       {"points", all},
-                       {"bodies", ordered_json::array()}};
-  for (std::size_t i = 0; i < shot.truth.names.size(); ++i) {
-    ordered_json body = {{"label", i}, {"name", shot.truth.names[i]}};
-    body.update(as_json(shot.truth.X_WB[i]));
-    body["pixels"] = pixels[i];
-    body["points"] = points[i];
-    json["bodies"].push_back(body);
-  }
-  return json;
-}
+/// What a camera has before it, and what it is.
+struct CameraView {
+  model::Scenario scenario;
+  camera::Scene scene;
+  double time = 0.0;       ///< s
+  std::uint64_t seed = 0;  ///< of the cell
+};
 
 /// "frame" and "-truth.json" to the file beside the output.
 std::string beside(const fs::path& output, const std::string& ending) {
@@ -68,6 +60,25 @@ std::vector<std::string> side_files(const fs::path& output) {
     return {beside(output, "-intensity.png"), beside(output, "-labels.png"), beside(output, "-truth.json")};
   if (output.extension() == ".ply") return {beside(output, "-truth.json")};
   return {};
+}
+
+/// Of a cell that is served over CLICK: boxes where and as large as its sensors say, the rest as in the scenario.
+CameraView look_at_served(const CameraOptions& options) {
+  CameraView view;
+  view.scenario = load_changed(options.recording, options.changes);
+  if (view.scenario.sequences.empty()) throw InputError(view.scenario.source_name, "sequences", "", "boxes");
+  remote_plant::WatchedCell cell(view.scenario, options.sequence.value_or(view.scenario.sequences.front().name),
+                                 *options.click, options.client.patience, click::find_client_keys(options.client.keys));
+  const std::string trouble = cell.look();
+  if (!trouble.empty()) {
+    throw InputError("command line", "--click", "'" + *options.click + "'",
+                     "a served cell: " + printable(trouble, kLongestMessage));
+  }
+  view.scene = options.without_robot ? remote_runs::scene_without_robot(cell)
+                                     : remote_runs::watched_scene(cell, options.recording);
+  view.time = cell.time();
+  view.seed = view.scenario.seed;
+  return view;
 }
 
 CameraView look_at_recording(const CameraOptions& options) {
@@ -106,7 +117,7 @@ int run_camera(const CameraOptions& options) {
 
   const CameraView view = options.click ? look_at_served(options) : look_at_recording(options);
   model::CameraParams params =
-      choose_camera(view.scenario, options.camera, options.scenario.value_or(options.recording));
+      camera::choose_camera(view.scenario, options.camera, options.scenario.value_or(options.recording));
   camera::CameraDraw draw;
   if (options.exact) {
     params.errors = model::make_camera("ideal").errors;
@@ -119,23 +130,22 @@ int run_camera(const CameraOptions& options) {
   for (const std::string& path : sides) side.emplace_back(path);
 
   const camera::RenderedFrame shot = camera::render(view.scene, params, draw, options.shot, options.threads);
-  const ordered_json truth = describe(shot, view.time);
   if (ending == ".h5") {
     camera::write_h5(file, shot.frame, &shot.truth);
     file.publish();
   } else if (ending == ".ply") {
     write_file(std::move(file), camera::format_ply(shot.frame, &shot.truth));
-    write_file(std::move(side[0]), truth.dump(1) + "\n");
+    write_file(std::move(side[0]), camera::format_truth(shot, view.time, 1));
   } else {
     write_file(std::move(file), camera::format_png(shot.frame));
     write_file(std::move(side[0]), camera::format_intensity_png(shot.frame));
     write_file(std::move(side[1]), camera::format_label_png(shot.truth));
-    write_file(std::move(side[2]), truth.dump(1) + "\n");
+    write_file(std::move(side[2]), camera::format_truth(shot, view.time, 1));
   }
   if (options.json)
-    print(truth.dump(2) + "\n");
+    print(camera::format_truth(shot, view.time, 2));
   else
-    print(fmt::format("{}: {} points of {} pixels at {:.3f} s, {}\n", options.output, truth["points"].get<int>(),
+    print(fmt::format("{}: {} points of {} pixels at {:.3f} s, {}\n", options.output, camera::count_points(shot.frame),
                       params.width * params.height, view.time, params.name));
   return kSuccess;
 }

@@ -1,5 +1,4 @@
 // cell: where the robot and the aligner of a cell can stand.
-#include <fmt/format.h>
 
 #include <filesystem>
 #include <optional>
@@ -9,9 +8,7 @@
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/shipped.hpp"
-#include "apps/snug/command_line/verb.hpp"
 #include "apps/snug/command_line/verbs.hpp"
-#include "apps/snug/common/robot_warnings.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/read_file.hpp"

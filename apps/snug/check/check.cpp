@@ -6,11 +6,8 @@
 #include <string>
 
 #include "apps/snug/command_line/outputs.hpp"
-#include "apps/snug/command_line/ranges.hpp"
 #include "apps/snug/command_line/scenario_options.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
-#include "apps/snug/command_line/verb.hpp"
-#include "apps/snug/common/robot_warnings.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/motion/program_csv.hpp"

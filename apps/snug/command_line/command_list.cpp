@@ -1,13 +1,27 @@
-// CommandList: verbs and options as the parser knows them, as plain data.
+// list_commands: verbs and options as the parser knows them, as plain data.
 #include "apps/snug/command_line/command_list.hpp"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-
-#include "apps/snug/command_line/options.hpp"
 
 namespace snug::app {
 namespace {
+
+using commands::Command;
+using commands::CommandList;
+using commands::CommandOption;
+
+/// The words of the checks of an option.
+std::vector<std::string> choices_of(CLI::Option& option) {
+  std::vector<std::string> words;
+  try {
+    for (int i = 0;; ++i) {
+      const std::vector<std::string> more = commands::choices_in(option.get_validator(i)->get_name());
+      words.insert(words.end(), more.begin(), more.end());
+    }
+  } catch (const CLI::OptionNotFound&) {  // the parser has no other way to say that there are no more
+  }
+  return words;
+}
 
 CommandOption describe(CLI::Option& option) {
   CommandOption described;
@@ -26,7 +40,7 @@ CommandOption describe(CLI::Option& option) {
   return described;
 }
 
-void add(CLI::App& app, const std::vector<std::string>& words, std::vector<Command>& commands) {
+void add(CLI::App& app, const std::vector<std::string>& words, CommandList& commands) {
   Command command;
   command.words = words;
   command.about = app.get_description();
@@ -44,8 +58,8 @@ void add(CLI::App& app, const std::vector<std::string>& words, std::vector<Comma
 
 }  // namespace
 
-std::vector<Command> list_commands(CLI::App& app) {
-  std::vector<Command> commands;
+CommandList list_commands(CLI::App& app) {
+  CommandList commands;
   add(app, {}, commands);
   return commands;
 }

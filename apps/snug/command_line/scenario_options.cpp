@@ -1,13 +1,8 @@
 // The words with which several verbs change a scenario: more boxes, another container, a pallet, single keys.
 #include "apps/snug/command_line/scenario_options.hpp"
 
-#include <CLI/CLI.hpp>
-
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/shipped.hpp"
-#include "snug/model/items_file.hpp"
-#include "snug/model/other_container.hpp"
-#include "snug/model/scenario_edit.hpp"
 #include "snug/robot/load_arm.hpp"
 
 namespace snug::app {
@@ -26,15 +21,6 @@ void add_scenario_changes(const Verb& verb, ScenarioChanges& changes) {
       .one_each();
 }
 
-OptionWords words_of(const ScenarioChanges& changes) {
-  OptionWords words;
-  for (const std::string& file : changes.items) words.emplace_back("--items", file);
-  if (changes.container) words.emplace_back("--container", *changes.container);
-  if (changes.pallet) words.emplace_back("--pallet", *changes.pallet);
-  for (const std::string& change : changes.set) words.emplace_back("--set", change);
-  return words;
-}
-
 NamedFiles files_of(const std::string& file, const ScenarioChanges& changes, const model::Scenario& scenario) {
   NamedFiles files = {{"the scenario", find_scenario(file)}};
   for (const std::string& items : changes.items) files.push_back({"--items", find_shipped(items)});
@@ -44,19 +30,8 @@ NamedFiles files_of(const std::string& file, const ScenarioChanges& changes, con
 }
 
 SourcedScenario load_with_sources(const std::string& file, const ScenarioChanges& changes) {
-  SourcedScenario loaded{model::load_scenario(find_scenario(file)), {}};
-  model::Scenario& scenario = loaded.scenario;
-  std::vector<model::KeyValue> values;
-  for (const std::string& words : changes.set) values.push_back(model::parse_key_value(words, "--set"));
-  scenario = model::with_values(scenario, values, "--set");
-  if (changes.container) scenario = model::with_container(scenario, *changes.container);
-  if (changes.pallet) scenario = model::with_pallet(scenario, *changes.pallet);
-  loaded.ends.push_back(scenario.parcels.size());
-  for (const std::string& items : changes.items) {
-    model::add_items(scenario, find_shipped(items));
-    loaded.ends.push_back(scenario.parcels.size());
-  }
-  print_warnings(scenario.warnings);
+  SourcedScenario loaded = model::load_changed(find_scenario(file), changes, find_shipped);
+  print_warnings(loaded.scenario.warnings);
   return loaded;
 }
 

@@ -1,10 +1,12 @@
 // Options that several verbs have: one declaration of each, with one text.
 #include "apps/snug/command_line/shared_options.hpp"
 
-#include "apps/snug/command_line/ranges.hpp"
+#include "apps/snug/command_line/outputs.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/model/spin.hpp"
 #include "snug/motion/program_tracking.hpp"
+#include "snug/robot/load_arm.hpp"
+#include "snug/robot/urdf_warnings.hpp"
 
 namespace snug::app {
 
@@ -33,12 +35,13 @@ void add_corrections(const Verb& verb, std::string& corrections) {
 
 std::string layer_of(const std::string& corrections) { return corrections == "none" ? "" : corrections; }
 
-std::array<OptionRow, 2> add_client(const Verb& verb, ClientWords& client, const char* timeout) {
+std::array<OptionRow, 2> add_client(const Verb& verb, std::optional<std::string>& keys, double& patience,
+                                    const char* timeout) {
   return {
-      verb.option("--keys", client.keys, "DIR",
+      verb.option("--keys", keys, "DIR",
                   "keys by which this program is known there, and knows whom it meets (`snug keys`): a folder, or a "
                   "file NAME.key_secret in it"),
-      verb.option(timeout, client.patience, "SECONDS", "how long to wait for an answer from there", within(0.01, 1e5))};
+      verb.option(timeout, patience, "SECONDS", "how long to wait for an answer from there", within(0.01, 1e5))};
 }
 
 void add_physics(const Verb& verb, PhysicsWords& physics) {
@@ -79,6 +82,14 @@ void choose_motion(const MotionWords& words, std::string_view text, std::string_
   if (words.controller) refuse_tempo_without_fast(words.tempo, *words.controller);
   options.tracking =
       motion::choose_tracking(words.controller, words.tempo, motion::find_tracking(text, name), "command line");
+}
+
+void print_robot_warnings(const model::Scenario& scenario) {
+  if (!scenario.robot) return;
+  const std::filesystem::path urdf = robot::urdf_path(scenario);
+  print_warnings(robot::find_assumptions(urdf, scenario.robot->tool_frame));
+  print_warnings(robot::find_unknown_efforts(urdf));
+  print_warnings(robot::find_weak_joints(scenario));
 }
 
 }  // namespace snug::app

@@ -31,7 +31,11 @@ struct ClientWords {
   double patience = 10.0;           ///< s
 };
 /// --keys, and the option `timeout`.
-std::array<OptionRow, 2> add_client(const Verb& verb, ClientWords& client, const char* timeout);
+std::array<OptionRow, 2> add_client(const Verb& verb, std::optional<std::string>& keys, double& patience,
+                                    const char* timeout);
+inline std::array<OptionRow, 2> add_client(const Verb& verb, ClientWords& client, const char* timeout) {
+  return add_client(verb, client.keys, client.patience, timeout);
+}
 
 /// How a cell is simulated, instead of as its scenario says.
 struct PhysicsWords {
@@ -59,5 +63,8 @@ void refuse_tempo_without_fast(const std::optional<double>& tempo, const std::st
 /// tracking of the program that is none.
 void choose_motion(const MotionWords& words, std::string_view text, std::string_view name,
                    cell::SimulationOptions& options);
+
+/// Prints on stderr what the URDF of the scenario's robot leaves open, a line each; nothing without a robot.
+void print_robot_warnings(const model::Scenario& scenario);
 
 }  // namespace snug::app

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "apps/snug/command_line/options.hpp"
+#include "snug/commands/checks.hpp"
 
 // The parser takes seconds to compile: it is included by the few files that ask it.
 namespace CLI {
@@ -18,6 +18,14 @@ class Option;
 }  // namespace CLI
 
 namespace snug::app {
+
+using namespace commands;  // NOLINT(google-build-using-namespace): the words of every verb
+
+// Bounds of what options count: threads, memory and patience end somewhere.
+inline constexpr std::uint64_t kMostThreads = 256;
+inline constexpr std::uint64_t kMostRuns = 10'000;       ///< of repeated runs
+inline constexpr std::uint64_t kMostSequences = 1000;    ///< about as many as one scenario can hold with their items
+inline constexpr std::uint64_t kMostThings = 1'000'000;  ///< frames, problems
 
 enum ExitCode : int {
   kSuccess = 0,    ///< done as asked

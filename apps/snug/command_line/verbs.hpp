@@ -5,6 +5,10 @@
 
 namespace snug::app {
 
+/// Adds all of them to `app`, in the order of its --help; parsing one of them sets `action`, which must outlive the
+/// parser.
+void add_verbs(CLI::App& app, Action& action);
+
 void add_init(CLI::App& app, Action& action);
 void add_simulate(CLI::App& app, Action& action);
 void add_pack(CLI::App& app, Action& action);
@@ -21,9 +25,11 @@ void add_ur(CLI::App& app, Action& action);
 void add_keys(CLI::App& app, Action& action);
 void add_report(CLI::App& app, Action& action);
 void add_view(CLI::App& app, Action& action);
+void add_ui(CLI::App& app, Action& action);
 void add_plot(CLI::App& app, Action& action);
 void add_picture(CLI::App& app, Action& action);
 void add_export(CLI::App& app, Action& action);
+void add_items(CLI::App& app, Action& action);
 void add_load(CLI::App& app, Action& action);
 void add_shake(CLI::App& app, Action& action);
 void add_cup(CLI::App& app, Action& action);

@@ -7,7 +7,6 @@
 #include <filesystem>
 
 #include "apps/snug/command_line/outputs.hpp"
-#include "apps/snug/command_line/ranges.hpp"
 #include "apps/snug/command_line/shipped.hpp"
 #include "snug/core/input_error.hpp"
 
@@ -22,6 +21,12 @@ void add_selection(const Verb& verb, replay::Selection& selection) {
 
 void add_urdf(const Verb& verb, std::optional<std::string>& urdf) {
   verb.option("--urdf", urdf, "FILE.urdf", "how the robot in it looks (default: the file that its scenario names)");
+}
+
+void expect_one_or_two(const std::vector<std::string>& recordings) {
+  if (recordings.size() <= 2) return;
+  throw InputError("command line", "recordings", std::to_string(recordings.size()) + " of them",
+                   "one, or one and another to lay over it");
 }
 
 void expect_recorded(const record::RecordingReader& reader, const std::string& path,

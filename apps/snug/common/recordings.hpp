@@ -18,6 +18,8 @@ void add_selection(const Verb& verb, replay::Selection& selection);
 /// --urdf of the robot in a recording.
 void add_urdf(const Verb& verb, std::optional<std::string>& urdf);
 
+/// Throws InputError for more recordings than one and another that is laid over it.
+void expect_one_or_two(const std::vector<std::string>& recordings);
 /// Throws InputError for a recording without frames and for an instant that was not recorded: what is drawn of it would
 /// show another. `path`: of the recording; `time`: s.
 void expect_recorded(const record::RecordingReader& reader, const std::string& path, const std::optional<double>& time);

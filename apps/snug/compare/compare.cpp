@@ -1,7 +1,6 @@
 // compare: agents x sequences x plants.
-#include "apps/snug/command_line/ranges.hpp"
 #include "apps/snug/command_line/verbs.hpp"
-#include "apps/snug/compare/compare_study.hpp"
+#include "apps/snug/pack/pack.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -9,84 +8,54 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <sstream>
 
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/shipped.hpp"
-#include "apps/snug/command_line/stop_signal.hpp"
 #include "apps/snug/command_line/version.hpp"
 #include "apps/snug/command_line/viewer_page.hpp"
 #include "apps/snug/common/recordings.hpp"
+#include "snug/commands/stop_signal.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/packing/python_agent.hpp"
 #include "snug/runs/result_json.hpp"
+#include "snug/study/comparison_design.hpp"
 #include "snug/study/run.hpp"
 
 namespace snug::app {
 namespace {
 
-/// "all" or a list, each checked against what there is.
-std::vector<std::string> choose(const std::string& words, const std::vector<std::string>& known, const char* key,
-                                bool may_be_python = false) {
-  if (words == "all") return known;
-  std::vector<std::string> chosen;
-  std::stringstream text(words);
-  for (std::string word; std::getline(text, word, ',');) {
-    if (std::ranges::find(known, word) == known.end() && !(may_be_python && packing::is_python_agent(word))) {
-      throw InputError("command line", key, "'" + word + "'", fmt::format("all, or of {}", fmt::join(known, ", ")));
-    }
-    chosen.push_back(word);
-  }
-  if (chosen.empty()) throw InputError("command line", key, "nothing", "all, or names separated by commas");
-  return chosen;
-}
+/// The words of `snug compare`.
+struct CompareOptions {
+  PackOptions pack;                ///< scenario, seeds, perception, robot, decision time, threads, samples
+  study::ComparisonChoice choice;  ///< of agents, sequences and plants
+  bool json = false;
+  bool csv = false;
+  std::optional<std::string> page;  ///< HTML file
+  std::optional<std::string> dir;   ///< folder that keeps the rows, so that the same words go on after a kill
+};
 
-/// Adds sequences of every box of the scenario, in random order; their names.
-std::vector<std::string> add_random_sequences(model::Scenario& scenario, int count, std::uint64_t seed) {
-  std::vector<std::string> names;
-  for (int i = 1; i <= count; ++i) {
-    names.push_back("random-" + std::to_string(i));
-    scenario.sequences.push_back(draw_order(scenario, names.back(), seed));
-  }
-  return names;
-}
-
-std::vector<std::string> choose_sequences(const CompareOptions& options, model::Scenario& scenario) {
-  std::vector<std::string> known;
-  for (const model::Sequence& sequence : scenario.sequences) known.push_back(sequence.name);
-  std::vector<std::string> chosen;
-  if (options.sequences || options.random == 0)
-    chosen = choose(options.sequences.value_or("all"), known, "--sequences");
-  for (std::string& name : add_random_sequences(scenario, options.random, options.random_seed)) {
-    chosen.push_back(std::move(name));
-  }
-  return chosen;
-}
-
-/// Every agent packs every sequence in every plant; random sequences in plants of their own.
-std::vector<study::SessionPoint> list_sessions(const CompareOptions& options, const std::vector<std::string>& agents,
-                                               const std::vector<std::string>& sequences) {
-  const std::size_t plants = static_cast<std::size_t>(options.plants);
-  const std::size_t given = sequences.size() - static_cast<std::size_t>(options.random);
-  const std::size_t count = agents.size() * sequences.size() * plants;
-  if (count > kMostSessions) {
-    throw InputError("command line", "sessions", std::to_string(count),
-                     fmt::format("at most {}; `snug study` runs more (docs/studies.md)", kMostSessions));
-  }
-  std::vector<study::SessionPoint> points;
-  for (const std::string& agent : agents) {
-    for (std::size_t i = 0; i < sequences.size(); ++i) {
-      const std::size_t first = i > given ? (i - given) * plants : 0;
-      for (std::size_t plant = 0; plant < plants; ++plant) {
-        points.push_back({agent, sequences[i], options.pack.plant_seed + first + plant, i >= given, {}});
-        if (options.runs) points.back().recording = recording_path(*options.runs, points.size() - 1, points.back());
-      }
-    }
-  }
-  return points;
+/// The words that all sessions have.
+OptionWords common_words(const PackOptions& pack, std::uint64_t seed) {
+  const PackOptions usual;
+  OptionWords words = words_of(pack.changes);
+  const auto add = [&](const char* option, const auto& value, const auto& otherwise) {
+    if (value != otherwise) words.emplace_back(option, fmt::format("{}", value));
+  };
+  words.emplace_back("--seed", std::to_string(seed));
+  for (const std::string& change : pack.plant_set) words.emplace_back("--plant-set", change);
+  add("--perception", pack.plant.perception, usual.plant.perception);
+  add("--samples", pack.samples, usual.samples);
+  if (pack.skips) words.emplace_back("--skips", std::to_string(*pack.skips));
+  add("--decision-time", pack.decision_time, usual.decision_time);
+  add("--future", pack.future, usual.future);
+  add("--fault", pack.fault, usual.fault);
+  add("--controller", pack.controller, usual.controller);
+  if (pack.tempo) words.emplace_back("--tempo", fmt::format("{}", *pack.tempo));
+  if (pack.robot) words.emplace_back("--robot", *pack.robot);
+  return words;
 }
 
 /// What no session could use is said before the first one.
@@ -148,7 +117,7 @@ int run_session(const CompareOptions& options, const SourcedScenario& loaded, co
   PackOptions pack = options.pack;
   pack.agent = point.agent;
   pack.sequence = point.sequence;
-  pack.plant_seed = point.plant_seed;
+  pack.plant.seed = point.plant_seed;
   pack.threads = threads;
   const session::SessionOptions session = make_session_options(pack, loaded);
   const simulated_plant::SimulatedPlantOptions plant = make_plant_options(pack, session);
@@ -156,7 +125,7 @@ int run_session(const CompareOptions& options, const SourcedScenario& loaded, co
   study::TrialFiles files;
   if (!point.recording.empty()) {
     recording = reserve_recording(point.recording);
-    files.recording = recording_of(plant, session.agent, *recording);
+    files.recording = study::recording_of(plant, session.agent, version_text(), *recording);
     files.describe = [](const runs::RunResult& one) { return runs::format_result(one); };
   }
   const study::Trial trial = study::run_trial(loaded.scenario, point.sequence, session, plant, {}, files);
@@ -183,20 +152,22 @@ std::optional<study::Folder> open_folder(const CompareOptions& options, const st
 int run_compare(const CompareOptions& options) {
   SourcedScenario loaded = load_with_sources(options.pack.scenario, options.pack.changes);
   model::Scenario& scenario = loaded.scenario;
-  const std::vector<std::string> sequences = choose_sequences(options, scenario);
-  const std::vector<std::string> agents = choose(options.agents, packing::agent_names(), "--agents", true);
-  const std::vector<study::SessionPoint> points = list_sessions(options, agents, sequences);
+  study::ComparisonChoice choice = options.choice;
+  choice.plant_seed = options.pack.plant.seed;
+  const study::ComparisonDesign design = study::design_comparison(choice, scenario);
+  const std::vector<study::SessionPoint>& points = design.points;
   const std::uint64_t seed = options.pack.seed.value_or(scenario.seed);
-  const study::Study study = make_compare_study(options, seed, points);
-  check_words(options.pack, agents);
+  const study::Study study =
+      study::make_comparison_study(choice, options.pack.scenario, common_words(options.pack, seed), points);
+  check_words(options.pack, design.agents);
   NamedFiles inputs = files_of(options.pack.scenario, options.pack.changes, scenario);
   expect_distinct(inputs, options.page ? NamedFiles{{"-o", *options.page}} : NamedFiles{});  // before a folder is made
   const std::optional<study::Folder> folder = open_folder(options, study, inputs);
   std::optional<OutputFile> page = reserve(inputs, options.page);
-  if (options.runs) make_folder("--runs", *options.runs);
+  if (choice.recordings) make_folder("--runs", *choice.recordings);
   catch_interrupts();
-  std::fprintf(stderr, "snug: %zu sessions: %zu agents, %zu sequences, %d plants\n", points.size(), agents.size(),
-               sequences.size(), options.plants);
+  std::fprintf(stderr, "snug: %zu sessions: %zu agents, %zu sequences, %d plants\n", points.size(),
+               design.agents.size(), design.sequences.size(), choice.plants);
   const study::CompareForm form = form_of(options);
   print_now(study::format_compare_head(form));
 
@@ -242,16 +213,16 @@ void add_compare(CLI::App& app, Action& action) {
                   kCompareExamples);
   CompareOptions& options = verb.runs(run_compare);
   add_scenario(verb, options.pack.scenario);
-  verb.option("--sequences", options.sequences, "NAMES",
+  verb.option("--sequences", options.choice.sequences, "NAMES",
               "all, or names separated by commas (default: all; with --random none but the random ones)");
-  const OptionRow random = verb.option("--random", options.random, "N",
+  const OptionRow random = verb.option("--random", options.choice.random, "N",
                                        "so many more sequences, random-1, ...: every box of the scenario in random "
                                        "order; each is packed in plants of its own",
                                        whole(1, 10000));
-  verb.option("--random-seed", options.random_seed, "N", "seed of their order", whole(0)).needs(random);
-  verb.option("--agents", options.agents, "NAMES",
+  verb.option("--random-seed", options.choice.random_seed, "N", "seed of their order", whole(0)).needs(random);
+  verb.option("--agents", options.choice.agents, "NAMES",
               "all built-in ones, or names separated by commas, module:Class of Python among them");
-  verb.option("--plants", options.plants, "N",
+  verb.option("--plants", options.choice.plants, "N",
               "plants that every agent packs with every sequence: the seed --plant-seed and those after it",
               whole(1, kMostRuns));
   add_packing_options(verb, options.pack);
@@ -259,7 +230,7 @@ void add_compare(CLI::App& app, Action& action) {
   verb.flag("--csv", options.csv, "print rows as CSV").excludes(json);
   verb.option("-o,--output", options.page, "FILE.html",
               "page: charts by agent, sequence and plant, each container from above, the words that repeat each run");
-  verb.option("--runs", options.runs, "DIR",
+  verb.option("--runs", options.choice.recordings, "DIR",
               "leave a recording and its report page of every session in this folder; the page of -o links to them");
   verb.option("--dir", options.dir, "DIR",
               "keep every row in this folder: the same words go on after a kill; DIR/study.yaml is the comparison as a "

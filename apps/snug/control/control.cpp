@@ -1,24 +1,19 @@
 // control: a program through the joints of a CLICK simulator, with snug's joint controller.
 #include "apps/snug/command_line/verbs.hpp"
 
-#include <fmt/format.h>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
 #include "apps/snug/command_line/outputs.hpp"
-#include "apps/snug/command_line/ranges.hpp"
 #include "apps/snug/command_line/scenario_options.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
-#include "apps/snug/command_line/verb.hpp"
-#include "apps/snug/common/robot_warnings.hpp"
 #include "snug/cell/joint_pace.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/core/text.hpp"
 #include "snug/motion/program_csv.hpp"
-#include "snug/remote_plant/program_client.hpp"
+#include "snug/remote_plant/program_text.hpp"
 #include "snug/runs/corrected.hpp"
 #include "snug/runs/program_fit.hpp"
 
@@ -38,42 +33,6 @@ struct ControlOptions {
   ClientWords client;
   bool json = false;
 };
-
-std::string as_json(const remote_plant::ProgramClientResult& result) {
-  nlohmann::ordered_json document = {{"duration_s", result.duration},
-                                     {"simulated_s", result.simulated},
-                                     {"wall_s", result.wall},
-                                     {"real_time_factor", result.simulated / result.wall},
-                                     {"ticks", result.ticks},
-                                     {"row", result.row},
-                                     {"objects", nlohmann::ordered_json::object()}};
-  for (const auto& [name, object] : result.last.objects) {
-    for (const click::SensorValue& value : object.object) {
-      if (value.type != click::ValueType::Position) continue;
-      document["objects"][name] = {{"position_m", {value.vector.x(), value.vector.y(), value.vector.z()}}};
-    }
-  }
-  document["failure"] = result.failure;
-  return document.dump(2) + "\n";
-}
-
-std::string as_table(const remote_plant::ProgramClientResult& result) {
-  constexpr double kMm = 1e3;
-  std::string text = fmt::format("{:<16} {:>9} {:>9} {:>9}\n", "object", "x_W mm", "y_W mm", "z_W mm");
-  for (const auto& [name, object] : result.last.objects) {
-    for (const click::SensorValue& value : object.object) {
-      if (value.type != click::ValueType::Position) continue;
-      const Vector3 p = kMm * value.vector;
-      text += fmt::format("{:<16} {:>9.2f} {:>9.2f} {:>9.2f}\n", printable(name, 100), p.x(), p.y(), p.z());
-    }
-  }
-  text += fmt::format("\nprogram            {:.2f} s, {} ticks in {:.2f} s, real-time factor {:.0f}\n", result.duration,
-                      result.ticks, result.wall, result.simulated / result.wall);
-  if (!result.failure.empty())
-    text += fmt::format("failed             toward waypoint {}: {}\n", result.row + 1,
-                        printable(result.failure, kLongestMessage));
-  return text;
-}
 
 int run_control(const ControlOptions& options) {
   const model::Scenario scenario = load_changed(options.scenario, {});
@@ -103,7 +62,7 @@ int run_control(const ControlOptions& options) {
   const remote_plant::ProgramClientResult result = remote_plant::run_program(client, scenario, arm, plan, settings);
   if (!result.has_begun)
     throw InputError("command line", "--click", result.failure, "the address of a simulator of this robot");
-  print(options.json ? as_json(result) : as_table(result));
+  print(options.json ? remote_plant::format_json(result) : remote_plant::format_table(result));
   if (result.failure.empty()) return kSuccess;
   std::fprintf(stderr, "snug: failed: %s\n", printable(result.failure, kLongestMessage).c_str());
   return kRunFailed;

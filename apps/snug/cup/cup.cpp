@@ -1,66 +1,82 @@
-// cup: reads JSON lines, asks the cup module, prints its answers.
-#include "apps/snug/cup/cup.hpp"
-
-#include <filesystem>
+// cup: asks the cup module, by lines of JSON or by the numbers of a data sheet.
 #include <fstream>
 #include <iostream>
 #include <string>
 
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/shipped.hpp"
 #include "apps/snug/command_line/verbs.hpp"
-#include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
+#include "snug/core/write_file.hpp"
+#include "snug/cup/estimate_text.hpp"
 #include "snug/cup/json_lines.hpp"
 
 namespace snug::app {
 namespace {
 
-using AnswerLine = std::string (*)(std::string_view line, int line_number, std::string_view source);
-
 struct CupOptions {
   std::string input = "-";  ///< file of JSON lines; "-": stdin
 };
 
-constexpr std::size_t kLongestLine = 65536;  // a question with all its digits has some 1500
+struct CupEstimateOptions {
+  double diameter_mm = 0.0;
+  double bellows = 1.5;
+  std::string material = "silicone", lip = "plain";
+  std::string vacuum = "-60kPa";
+  std::optional<double> stroke_mm, mass_max;
+  std::optional<std::string> output;
+  bool json = false;
+};
+
+struct CatalogueOptions {
+  bool json = false;
+};
 
 constexpr std::size_t kLargestLines = std::size_t{16} << 30U;  // read line by line
 
-/// Like std::getline, but of a line that does not end only a little more than is allowed.
-bool read_line(std::istream& input, std::string& line) {
-  line.clear();
-  for (int c = input.get(); c != std::char_traits<char>::eof(); c = input.get()) {
-    if (c == '\n' || line.size() > kLongestLine) return true;
-    line += static_cast<char>(c);
-  }
-  return !line.empty();
-}
-
-int answer_lines(std::istream& input, const std::string& source, AnswerLine answer) {
-  std::string line;
-  for (int number = 1; read_line(input, line); ++number) {
-    if (line.size() > kLongestLine) {
-      throw InputError(source + ":" + std::to_string(number), "",
-                       "a line of more than " + std::to_string(kLongestLine) + " bytes",
-                       "one JSON object on each line");
-    }
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    print_now(answer(line, number, source) + "\n");
-  }
-  return kSuccess;
-}
-
-int run(const CupOptions& options, AnswerLine answer) {
+int run(const CupOptions& options, cup::AnswerLine answer) {
   const std::string input = find_shipped(options.input);
-  if (input == "-") return answer_lines(std::cin, "stdin", answer);
+  const auto take = [](const std::string& line) { print_now(line + "\n"); };
+  if (input == "-") {
+    cup::answer_json_lines(std::cin, "stdin", answer, take);
+    return kSuccess;
+  }
   check_readable(input, "a file of JSON lines, or - for what comes on stdin", kLargestLines);
   std::ifstream file(input);
-  return answer_lines(file, input, answer);
+  cup::answer_json_lines(file, input, answer, take);
+  return kSuccess;
 }
 
 int run_cup_evaluate(const CupOptions& options) { return run(options, cup::evaluate_json_line); }
 
 int run_cup_settle(const CupOptions& options) { return run(options, cup::settle_json_line); }
+
+cup::CupSheet sheet_of(const CupEstimateOptions& options) {
+  cup::CupSheet sheet;
+  sheet.diameter = 1e-3 * options.diameter_mm;
+  sheet.bellows = options.bellows;
+  sheet.material = cup::cup_material_of(options.material);
+  sheet.lip = options.lip == "foam" ? cup::LipKind::Foam : cup::LipKind::Plain;
+  sheet.pressure_gauge = cup::parse_gauge_pressure(options.vacuum, "--vacuum");
+  if (options.stroke_mm) sheet.stroke = 1e-3 * *options.stroke_mm;
+  sheet.mass_max = options.mass_max;
+  return sheet;
+}
+
+int run_cup_estimate(const CupEstimateOptions& options) {
+  const cup::CupSheet sheet = sheet_of(options);
+  const cup::CupEstimate estimate = cup::estimate_cup(sheet);
+  const std::string block = cup::format_estimate(sheet, estimate);
+  if (std::optional<OutputFile> output = reserve({}, options.output)) write_file(std::move(*output), block);
+  print(options.json ? cup::format_json(estimate) : block);
+  return kSuccess;
+}
+
+int run_cup_catalogue(const CatalogueOptions& options) {
+  print(options.json ? cup::format_catalogue_json() : cup::format_catalogue_table());
+  return kSuccess;
+}
 
 constexpr const char* kEvaluateHelp =
     R"(Each line: {"R": 3x3, "o": [3], "K": 6x6, "S_R_S1": 3x3, "S_o_S1": [3]}; matrices as rows, SI units, linear part first.
@@ -74,11 +90,38 @@ The answer has the pose of the lip, E_R_S and E_o_S, and whether the load stays 
 Example:
   snug cup settle scenarios/examples/loads.jsonl)";
 
+constexpr const char* kEstimateHelp =
+    R"(Prints `cup` and `uncertainty` of a scenario, with the range of each number and where it comes from: an estimate to start
+with. What holds and how the box tilts depends on it, filling hardly. Measure first what `snug identify` says is unknown.
+Example:
+  snug cup estimate --diameter 40 --bellows 1.5 --material silicone --lip foam --vacuum -60kPa --mass-max 5)";
+
 void add_questions(const Verb& verb, const char* name, const char* about, const char* help,
                    int (*run)(const CupOptions&)) {
   const Verb part = verb.part(name, about, help);
   CupOptions& options = part.runs(run);
   part.option("input", options.input, "FILE", "file of JSON lines, - for stdin");
+}
+
+void add_cup_estimate(const Verb& verb) {
+  const Verb part = verb.part("estimate", "a starting cup from a data sheet", kEstimateHelp);
+  CupEstimateOptions& options = part.runs(run_cup_estimate);
+  part.option("--diameter", options.diameter_mm, "MM", "of the lip", positive()).required();
+  part.option("--bellows", options.bellows, "N", "folds: 0 (flat), 1.5 or 2.5");
+  part.option("--material", options.material, "NAME", "of the cup",
+              one_of({"silicone", "nitrile", "polyurethane", "natural-rubber"}));
+  part.option("--lip", options.lip, "NAME", "what seals", one_of({"plain", "foam"}));
+  part.option("--vacuum", options.vacuum, "PRESSURE",
+              "gauge pressure of the hold, with its unit: kPa, mbar, bar or Pa");
+  part.option("--stroke", options.stroke_mm, "MM", "free length less length under vacuum", finite());
+  part.option("--mass-max", options.mass_max, "KG", "of the heaviest box: is it held?", positive());
+  part.option("-o,--output", options.output, "FILE.yaml", "also write the block here");
+  add_json(part, options.json);
+}
+
+void add_cup_catalogue(const Verb& verb) {
+  const Verb part = verb.part("catalogue", "generic cups by size, at -60 kPa");
+  add_json(part, part.runs(run_cup_catalogue).json);
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // export: one function for each format.
 #include "apps/snug/export/export.hpp"
-#include "apps/snug/command_line/ranges.hpp"
 #include "apps/snug/command_line/verbs.hpp"
 
 #include <fmt/format.h>
@@ -8,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <filesystem>
 #include <iterator>
 #include <sstream>
 #include <string_view>
@@ -151,10 +149,10 @@ void add_wiring(const Verb& verb, ExportOptions& options) {
   const auto add = [&](const char* name, std::optional<int>& number, const std::string& what) {
     verb.option(name, number, "N", "of urscript: " + what + " (default: robot.io of the scenario)", whole(0, 7));
   };
-  add("--vacuum-output", options.vacuum_output, "standard digital output of the vacuum");
-  add("--blow-off-output", options.blow_off_output, "standard digital output of the blow-off");
-  add("--vacuum-input", options.vacuum_input, "standard digital input that is on while there is vacuum");
-  add("--part-input", options.part_input, "standard digital input that is on while a box stands at the aligner");
+  add("--vacuum-output", options.wiring.vacuum_output, "standard digital output of the vacuum");
+  add("--blow-off-output", options.wiring.blow_off_output, "standard digital output of the blow-off");
+  add("--vacuum-input", options.wiring.vacuum_input, "standard digital input that is on while there is vacuum");
+  add("--part-input", options.wiring.part_input, "standard digital input that is on while a box stands at the aligner");
 }
 
 }  // namespace

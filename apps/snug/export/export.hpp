@@ -8,9 +8,9 @@
 #include "apps/snug/command_line/scenario_options.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/verb.hpp"
-#include "snug/control/urscript.hpp"
 #include "snug/replay/mcap_writer.hpp"
 #include "snug/replay/replay.hpp"
+#include "snug/runs/robot_export.hpp"
 
 namespace snug::app {
 
@@ -32,9 +32,8 @@ struct ExportOptions {
   double period = 0.04;              ///< s, between the points of a trajectory
   bool is_unchecked = false;         ///< not simulated before it is written
   control::UrScriptOptions script;
-  // of urscript, instead of what the scenario says: numbers of standard outputs and inputs
-  std::optional<int> vacuum_output, blow_off_output, vacuum_input, part_input;
-  std::string from_box;  ///< id; empty: the program's first
+  runs::StandardWiring wiring;  ///< of urscript, instead of what the scenario says
+  std::string from_box;         ///< id; empty: the program's first
 };
 
 /// Programs, for the controllers of real robots.

@@ -2,9 +2,6 @@
 #include "apps/snug/identify/identify.hpp"
 
 #include <fmt/format.h>
-#include <fmt/printf.h>
-
-#include <filesystem>
 
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
@@ -16,7 +13,6 @@
 #include "snug/identification/damping.hpp"
 #include "snug/identification/scenario_block.hpp"
 #include "snug/identification/stiffness.hpp"
-#include "snug/identification/virtual_experiments.hpp"
 #include "snug/model/scenario.hpp"
 
 namespace snug::app {
@@ -38,8 +34,6 @@ struct IdentifyDampingOptions : IdentifyOptions {
 };
 
 using identification::HeldBackError;
-using identification::MeasurementNoise;
-using identification::Parameter;
 
 identification::StiffnessOptions as_fit_options(const IdentifyStiffnessOptions& options, const model::CupParams& cup) {
   identification::StiffnessOptions fit;
@@ -52,27 +46,6 @@ identification::StiffnessOptions as_fit_options(const IdentifyStiffnessOptions& 
   if (options.parameters == "21") fit.form = identification::StiffnessForm::Full;
   fit.prior = cup.stiffness;
   return fit;
-}
-
-/// The five numbers of a fit with 21 have the errors of the entries they are read from.
-std::vector<identification::BlockEntry> stiffness_entries(const identification::StiffnessFit& fit) {
-  if (fit.parameters.size() == 5) return identification::block_entries(fit.parameters, 'k');
-  const auto parameter = [&](const char* entry, const char* name, double value) {
-    for (const Parameter& one : fit.parameters) {
-      if (one.name != entry) continue;
-      Parameter renamed = one;
-      renamed.name = name;
-      renamed.value = value;
-      return renamed;
-    }
-    return Parameter{};
-  };
-  const model::CupElasticity& five = fit.elasticity;
-  return identification::block_entries(
-      {parameter("k_x_x", "k_lat", five.lateral), parameter("k_z_z", "k_ax", five.axial),
-       parameter("k_rx_rx", "k_bend", five.bend), parameter("k_rz_rz", "k_tors", five.torsion),
-       parameter("k_x_ry", "c", five.coupling)},
-      'k');
 }
 
 std::vector<identification::Release> load_all(const IdentifyDampingOptions& options, const model::CupParams& cup) {
@@ -102,7 +75,7 @@ int run_identify_stiffness(const IdentifyStiffnessOptions& options) {
   if (output)
     write_file(std::move(*output),
                identification::format_cup_block(
-                   stiffness_entries(fit), {},
+                   identification::block_entries(fit), {},
                    {fmt::format("Stiffness from {} ({} poses, {}, chi2 per degree of freedom {:.3f})",
                                 file_name(options.input), fit.poses, name_of(fit.method), fit.chi2_per_dof)}));
   print(options.json ? format_json(fit, held_back, poses.noise_is_given)

@@ -1,11 +1,9 @@
 // identify payload: mass and centre of mass of a held box from one lift.
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
-#include "apps/snug/command_line/shipped.hpp"
 #include "apps/snug/identify/identify.hpp"
 #include "snug/cup/law.hpp"
 #include "snug/identification/payload_file.hpp"
-#include "snug/model/scenario.hpp"
 
 namespace snug::app {
 namespace {
@@ -17,15 +15,12 @@ struct IdentifyPayloadOptions : IdentifyOptions {
 };
 
 int run_identify_payload(const IdentifyPayloadOptions& options) {
-  const model::CupParams cup =
-      options.scenario ? model::load_scenario(find_scenario(*options.scenario)).cup : model::CupParams{};
+  const model::CupParams cup = cup_of(options);
   identification::PayloadSettings settings;
   settings.K = cup::as_matrix(cup.stiffness);
   settings.frames = identification::frames_of(cup);
-  if (options.position_noise) settings.noise.position = *options.position_noise;
-  if (options.rotation_noise) settings.noise.rotation = *options.rotation_noise;
-  if (options.force_noise) settings.noise.force = *options.force_noise;
-  if (options.torque_noise) settings.noise.torque = *options.torque_noise;
+  bool is_given = false;
+  apply(options, settings.noise, is_given);
   if (options.force_bias) settings.force_bias = *options.force_bias;
   if (options.torque_bias) settings.torque_bias = *options.torque_bias;
   std::vector<identification::PayloadSample> lift = identification::load_lift(options.input);

@@ -1,5 +1,4 @@
 // identify pluck: a virtual release, as sensors would record it.
-#include <fmt/format.h>
 #include <fmt/printf.h>
 
 #include "apps/snug/command_line/outputs.hpp"
@@ -7,9 +6,8 @@
 #include "apps/snug/identify/identify.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
-#include "snug/cup/law.hpp"
 #include "snug/identification/virtual_experiments.hpp"
-#include "snug/model/scenario.hpp"
+#include "snug/model/scenario_changes.hpp"
 
 namespace snug::app {
 namespace {
@@ -18,13 +16,11 @@ struct IdentifyPluckOptions : IdentifyOptions {
   std::string parcel;
   std::string direction = "axial";
   std::optional<double> amplitude;  ///< m or rad
-  std::uint64_t repeat = 3;
+  int repeat = 3;
   std::uint64_t seed = 1;
 };
 
 int run_identify_pluck(const IdentifyPluckOptions& options) {
-  using identification::PluckDirection;
-  identification::Pluck pluck;
   // A B1 box of the demonstrator, held by the middle of its upper face: Sz points into it.
   Vector3 size(0.2, 0.2, 0.097);
   SpatialInertia box{0.55, Vector3(0.0, 0.0, -0.032), Vector3(0.0021, 0.0022, 0.0038).asDiagonal()};
@@ -33,52 +29,26 @@ int run_identify_pluck(const IdentifyPluckOptions& options) {
     const model::Scenario scenario = model::load_scenario(find_scenario(*options.scenario));
     cup = scenario.cup;
     if (!options.parcel.empty()) {
-      const model::Parcel* parcel = model::find_parcel(scenario, options.parcel);
-      if (parcel == nullptr) {
-        std::vector<std::string> ids;
-        for (const model::Parcel& one : scenario.parcels) ids.push_back(one.id);
-        const std::string_view nearest = find_nearest(options.parcel, ids);
-        throw InputError("command line", "--parcel", "'" + options.parcel + "'",
-                         nearest.empty() ? "a parcel of the scenario"
-                                         : "a parcel of the scenario, nearest is " + std::string(nearest));
-      }
-      size = parcel->size;
-      box = parcel->inertia;
+      const model::Parcel& parcel = model::require_parcel(scenario, options.parcel, "--parcel");
+      size = parcel.size;
+      box = parcel.inertia;
     }
   } else if (!options.parcel.empty()) {
     throw InputError("command line", "--parcel", "no scenario that has it", "--scenario as well");
   }
-  const Matrix3 R_SP = Vector3(1.0, -1.0, -1.0).asDiagonal();
-  pluck.load_S = {box.mass, R_SP * (box.com - Vector3(0.0, 0.0, 0.5 * size.z())),
-                  R_SP * box.inertia * R_SP.transpose()};
-  pluck.frames = identification::frames_of(cup);
-  pluck.K = cup::as_matrix(cup.stiffness);
-  pluck.D = cup::as_matrix(cup.damping);
-  pluck.direction = options.direction == "axial"     ? PluckDirection::Axial
-                    : options.direction == "lateral" ? PluckDirection::Lateral
-                    : options.direction == "bend"    ? PluckDirection::Bend
-                                                     : PluckDirection::Torsion;
-  const bool is_turn = pluck.direction == PluckDirection::Bend || pluck.direction == PluckDirection::Torsion;
-  pluck.amplitude = options.amplitude.value_or(is_turn ? 0.1 : 0.004);
-  constexpr double kMostPull = 0.03, kMostTurn = 0.6;  // m, rad: a cup of 50 mm, a law that ends at 45 degrees
-  if (pluck.amplitude > (is_turn ? kMostTurn : kMostPull))
-    throw InputError("command line", "--amplitude", fmt::format("{}", pluck.amplitude),
-                     is_turn ? "0.6 rad or less" : "0.03 m or less");
-  MeasurementNoise noise;
+  const identification::PluckDirection direction = identification::pluck_direction_of(options.direction);
+  const identification::Pluck pluck = identification::plan_pluck(cup, size, box, direction, options.amplitude);
+  identification::MeasurementNoise noise;
   bool is_given = true;
   apply(options, noise, is_given);
-  Rng rng = Rng(options.seed).split("pluck");
-  std::vector<identification::Release> releases;
-  for (std::uint64_t i = 0; i < options.repeat; ++i) {
-    releases.push_back(identification::make_pluck(pluck));
-    identification::add_noise(releases.back(), noise, rng);
-  }
+  const std::vector<identification::Release> releases =
+      identification::make_plucks(pluck, options.repeat, noise, options.seed);
   NamedFiles inputs;
   add_file(inputs, "--scenario", options.scenario);
   write_file(*reserve(inputs, options.output), identification::format_releases(releases));
-  print(fmt::sprintf("%s: %llu releases %s by %g %s, %g kg, %zu samples each\n", options.output->c_str(),
-                     static_cast<unsigned long long>(options.repeat), options.direction.c_str(), pluck.amplitude,
-                     is_turn ? "rad" : "m", box.mass, releases.front().times.size()));
+  print(fmt::sprintf("%s: %d releases %s by %g %s, %g kg, %zu samples each\n", options.output->c_str(), options.repeat,
+                     options.direction.c_str(), pluck.amplitude, identification::is_turn(direction) ? "rad" : "m",
+                     box.mass, releases.front().times.size()));
   return kSuccess;
 }
 

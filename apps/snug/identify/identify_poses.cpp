@@ -1,16 +1,12 @@
 // identify poses: fits or evaluates the law of a cup on wrenches in many poses, prints numbers and what is missed.
 #include <fmt/format.h>
-#include <fmt/printf.h>
-
-#include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/shipped.hpp"
 #include "apps/snug/identify/identify.hpp"
 #include "snug/core/write_file.hpp"
-#include "snug/identification/cup_poses.hpp"
+#include "snug/identification/fit_text.hpp"
 
 namespace snug::app {
 namespace {
@@ -23,54 +19,15 @@ struct IdentifyPosesOptions {
   bool json = false;
 };
 
-using identification::PoseErrors;
-using nlohmann::ordered_json;
-
-std::string verdict_of(const PoseErrors& errors) {
-  const std::vector<std::string> names = identification::find_unexplained(errors);
-  if (names.empty()) return "this law explains these data";
-  return fmt::format("this law does not explain these data: {}", fmt::join(names, ", "));
-}
-
-ordered_json pose_json(const std::vector<identification::Parameter>& parameters, const PoseErrors& errors) {
-  ordered_json json = {{"parameters", ordered_json::array()},
-                       {"normalised_error", errors.normalised},
-                       {"linear_error", errors.linear},
-                       {"components", ordered_json::object()},
-                       {"is_explained", identification::find_unexplained(errors).empty()},
-                       {"verdict", verdict_of(errors)}};
-  for (const identification::Parameter& parameter : parameters)
-    json["parameters"].push_back({{"name", parameter.name},
-                                  {"value", parameter.value},
-                                  {"standard_error", parameter.standard_error},
-                                  {"unit", parameter.unit},
-                                  {"verdict", name_of(parameter.verdict)}});
-  Eigen::Index i = 0;
-  for (const char* name : {"fx", "fy", "fz", "tx", "ty", "tz"}) json["components"][name] = errors.components[i++];
-  return json;
-}
-
-void show_poses(const char* about, const PoseErrors& errors) {
-  print(fmt::sprintf("%s: %.3f standard deviations of a component rms; linear fit %.3f\n ", about, errors.normalised,
-                     errors.linear));
-  Eigen::Index i = 0;
-  for (const char* name : {"fx", "fy", "fz", "tx", "ty", "tz"})
-    print(fmt::sprintf(" %s %.3f", name, errors.components[i++]));
-  print("\n" + verdict_of(errors) + "\n");
-}
-
 int run_identify_poses(const IdentifyPosesOptions& options) {
   NamedFiles inputs = name_all("the input", {options.input});
   add_file(inputs, "--cup", options.cup);
   std::optional<OutputFile> output = reserve(inputs, options.output);
   const identification::CupPoses poses = identification::load_cup_poses(options.input);
   if (options.evaluate) {
-    const PoseErrors errors =
+    const identification::PoseErrors errors =
         identification::evaluate_pose_law(poses, identification::load_pose_law(find_shipped(*options.cup)));
-    if (options.json)
-      print(pose_json({}, errors).dump(2) + "\n");
-    else
-      show_poses("the law of --cup", errors);
+    print(options.json ? format_json(errors) : format_text(errors, "the law of --cup"));
     return kSuccess;
   }
   const identification::PoseFit fit = identification::fit_pose_law(poses);
@@ -78,16 +35,9 @@ int run_identify_poses(const IdentifyPosesOptions& options) {
     write_file(std::move(*output),
                identification::format_pose_law(
                    fit, fmt::format("Law from {} ({} poses; held back {:.3f}, linear {:.3f} standard deviations): {}",
-                                    std::filesystem::path(options.input).filename().string(), poses.poses.size(),
-                                    fit.held_back.normalised, fit.held_back.linear, verdict_of(fit.held_back))));
-  if (options.json) {
-    print(pose_json(fit.parameters, fit.held_back).dump(2) + "\n");
-    return kSuccess;
-  }
-  for (const identification::Parameter& parameter : fit.parameters)
-    print(fmt::sprintf("  %-12s %12.6g +- %-9.2g %-7s %s\n", parameter.name.c_str(), parameter.value,
-                       parameter.standard_error, parameter.unit.c_str(), name_of(parameter.verdict)));
-  show_poses("held back, each fifth pose predicted from the others", fit.held_back);
+                                    file_name(options.input), poses.poses.size(), fit.held_back.normalised,
+                                    fit.held_back.linear, verdict_of(fit.held_back))));
+  print(options.json ? format_json(fit) : format_text(fit));
   return kSuccess;
 }
 

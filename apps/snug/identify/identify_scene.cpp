@@ -1,8 +1,6 @@
 // identify scene: loads a task and its recordings, searches, prints what was found and what it is worth.
-#include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>

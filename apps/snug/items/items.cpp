@@ -1,115 +1,51 @@
-// items: reads orders or a scenario, prints representatives or sequences.
-#include "apps/snug/items/items.hpp"
-
+// items: tables of boxes, few boxes that stand for many real ones, and sequences of them.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <nlohmann/json.hpp>
-#include <set>
-
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/shipped.hpp"
-#include "snug/core/input_error.hpp"
+#include "apps/snug/command_line/verbs.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/core/write_file.hpp"
-#include "snug/model/items_file.hpp"
-#include "snug/packing/representatives.hpp"
+#include "snug/model/items_sheet.hpp"
+#include "snug/model/typical_orders.hpp"
+#include "snug/packing/item_text.hpp"
 
 namespace snug::app {
 namespace {
 
-void print_or_write(const std::string& text, std::optional<OutputFile> output) {
-  if (output) {
-    write_file(std::move(*output), text);
-  } else {
-    print(text);
-  }
-}
+struct ItemsReduceOptions {
+  std::string orders;
+  int count = 4;
+  double group_percent = 10.0;
+  double cover_percent = 20.0;
+  bool json = false;
+  std::optional<std::string> output;
+};
 
-std::string as_yaml(const packing::Reduction& reduction) {
-  std::string text = "parcel_types:\n";
-  for (std::size_t i = 0; i < reduction.representatives.size(); ++i) {
-    const packing::Representative& r = reduction.representatives[i];
-    text += fmt::format("  - {{name: R{}, size: [{:.4f}, {:.4f}, {:.4f}], mass: {:.3f}}}  # stands for {} boxes\n",
-                        i + 1, r.size.x(), r.size.y(), r.size.z(), r.mass, r.boxes);
-  }
-  return text;
-}
+struct ItemsSequenceOptions {
+  std::string scenario;
+  std::optional<std::string> types;  ///< file with parcel types: new boxes of these, as many as it takes
+  std::string name = "drawn";
+  int sequences = 1;
+  double fill_percent = 90.0;
+  double repeat = 0.4;
+  bool any_side_up = false;
+  bool all = false;  ///< every box of the scenario once
+  std::uint64_t seed = 1;
+  std::optional<std::string> output;
+};
 
-std::string as_json(const packing::Reduction& reduction) {
-  nlohmann::ordered_json all = nlohmann::ordered_json::array();
-  for (const packing::Representative& r : reduction.representatives) {
-    all.push_back({{"size", {r.size.x(), r.size.y(), r.size.z()}}, {"mass", r.mass}, {"boxes", r.boxes}});
-  }
-  const nlohmann::ordered_json json{{"representatives", all},
-                                    {"groups", reduction.groups},
-                                    {"boxes", reduction.boxes},
-                                    {"covered_percent", reduction.covered_percent}};
-  return json.dump(1) + "\n";
-}
+struct ItemsReadOptions {
+  std::string sheet;
+  model::SheetAnswers answers;
+  std::optional<std::string> output;
+};
 
-/// YAML takes any text between double quotes that is JSON.
-std::string quoted(const std::string& text) { return nlohmann::json(text).dump(); }
-
-std::string as_yaml(const model::Sequence& sequence) {
-  std::string text = "  - name: " + quoted(sequence.name) + "\n    items:\n";
-  for (const model::Item& item : sequence.items) {
-    text += fmt::format("      - {{parcel: {}, up: {}}}\n", quoted(item.parcel), "XYZ"[static_cast<int>(item.up)]);
-  }
-  return text;
-}
-
-/// The scenario with boxes of the file's types in place of its own: enough of each to fill the container alone.
-model::Scenario with_new_boxes(const model::Scenario& scenario, const ItemsSequenceOptions& options) {
-  model::Scenario changed = scenario;
-  changed.parcel_types.clear();
-  model::add_items(changed, *options.types);
-  const model::Container* container = model::find_container(scenario, scenario.target);
-  if (container == nullptr || changed.parcel_types.empty()) {
-    throw InputError(*options.types, "parcel_types", "nothing", "types, and a scenario with a container to fill");
-  }
-  std::vector<model::OrderLine> lines;
-  for (const model::ParcelType& type : changed.parcel_types) {
-    model::OrderLine line;
-    line.order = "new";
-    line.article = type.name;
-    line.size = type.size;
-    line.mass = type.mass;
-    line.count = static_cast<int>(
-        std::min(5000.0, std::ceil(0.01 * options.fill_percent * container->inner_size.prod() / type.size.prod())));
-    lines.push_back(line);
-  }
-  changed.sequences.clear();
-  changed.source_text.clear();  // nobody reads it
-  const std::size_t before = changed.parcels.size();
-  model::add_orders(changed, lines, *options.types);
-  changed.parcels.erase(changed.parcels.begin(), changed.parcels.begin() + static_cast<std::ptrdiff_t>(before));
-  return changed;
-}
-
-/// Types and those parcels that the sequences take.
-std::string boxes_as_yaml(const model::Scenario& drawn_from, const std::vector<model::Sequence>& sequences,
-                          const std::string& material) {
-  std::set<std::string> used;
-  for (const model::Sequence& sequence : sequences) {
-    for (const model::Item& item : sequence.items) used.insert(item.parcel);
-  }
-  std::string text = "parcel_types:\n";
-  for (const model::ParcelType& type : drawn_from.parcel_types) {
-    text += fmt::format("  - {{name: {}, size: [{}, {}, {}], mass: {}}}\n", quoted(type.name), type.size.x(),
-                        type.size.y(), type.size.z(), type.mass);
-  }
-  text += "parcels:\n";
-  for (const model::Parcel& parcel : drawn_from.parcels) {
-    if (used.count(parcel.id) == 0) continue;
-    text += fmt::format("  - {{id: {}, type: {}, material: {}}}\n", parcel.id, quoted(parcel.type), quoted(material));
-  }
-  return text;
-}
-
-}  // namespace
+struct ItemsDrawOptions {
+  model::TypicalOrders wanted;
+  std::optional<std::string> output;
+};
 
 int run_items_draw(const ItemsDrawOptions& options) {
   print_or_write(model::draw_typical_orders(options.wanted), reserve({}, options.output));
@@ -120,16 +56,7 @@ int run_items_read(const ItemsReadOptions& options) {
   std::optional<OutputFile> output = reserve({{"the sheet", options.sheet}}, options.output);
   const std::string text = read_file(options.sheet, "a table of boxes (CSV)");
   const model::ItemsSheet sheet = model::read_items_sheet(text, options.sheet, options.answers);
-  if (!sheet.questions.empty()) {
-    const model::SheetQuestion& open = sheet.questions.front();
-    const std::string option = open.about == "decimal" ? "--decimal" : "--" + open.about + "-unit";
-    std::string choices;
-    for (const auto& [answer, meaning] : open.choices)
-      choices += fmt::format("{}{} {} ({})", choices.empty() ? "" : ", ", option, answer, meaning);
-    throw InputError(options.sheet, open.about, "a sheet that does not say it", choices);
-  }
-  (void)model::parse_orders_csv(sheet.orders, options.sheet);  // says where a number is none
-  print_or_write(sheet.orders, std::move(output));
+  print_or_write(model::require_orders(sheet, options.sheet), std::move(output));
   return kSuccess;
 }
 
@@ -138,19 +65,8 @@ int run_items_reduce(const ItemsReduceOptions& options) {
   const packing::ReductionSettings settings{options.count, 0.01 * options.group_percent, 0.01 * options.cover_percent};
   const packing::Reduction reduction =
       packing::reduce_items(model::load_orders(find_shipped(options.orders)), settings);
-  if (output) write_file(std::move(*output), as_yaml(reduction));
-  if (options.json) {
-    print(as_json(reduction));
-    return kSuccess;
-  }
-  std::printf("%-4s %26s %9s %7s %8s\n", "", "size mm", "mass kg", "boxes", "boxes %");
-  for (std::size_t i = 0; i < reduction.representatives.size(); ++i) {
-    const packing::Representative& r = reduction.representatives[i];
-    std::printf("R%-3zu %8.1f %8.1f %8.1f %9.3f %7d %8.1f\n", i + 1, 1e3 * r.size.x(), 1e3 * r.size.y(),
-                1e3 * r.size.z(), r.mass, r.boxes, 100.0 * r.boxes / reduction.boxes);
-  }
-  std::printf("%d boxes in %d groups; %.1f %% are within %g %% of a representative's size\n", reduction.boxes,
-              reduction.groups, reduction.covered_percent, options.cover_percent);
+  if (output) write_file(std::move(*output), packing::format_yaml(reduction));
+  print(options.json ? packing::format_json(reduction) : packing::format_table(reduction, options.cover_percent));
   return kSuccess;
 }
 
@@ -159,7 +75,8 @@ int run_items_sequence(const ItemsSequenceOptions& options) {
   NamedFiles inputs = {{"the scenario", find_scenario(options.scenario)}};
   add_file(inputs, "--types", options.types);
   std::optional<OutputFile> output = reserve(inputs, options.output);
-  const model::Scenario drawn_from = options.types ? with_new_boxes(scenario, options) : scenario;
+  const model::Scenario drawn_from =
+      options.types ? packing::with_boxes_of_types(scenario, *options.types, options.fill_percent) : scenario;
   const packing::SequenceSettings settings{options.fill_percent, options.all ? 0.0 : options.repeat,
                                            options.any_side_up, options.all};
   std::vector<model::Sequence> sequences;
@@ -173,12 +90,119 @@ int run_items_sequence(const ItemsSequenceOptions& options) {
                                                options.fill_percent, options.seed);
   if (options.types) {
     const auto material = static_cast<std::size_t>(scenario.parcels.front().material.index);
-    text += boxes_as_yaml(drawn_from, sequences, scenario.materials[material].name);
+    text += packing::format_boxes_yaml(drawn_from, sequences, scenario.materials[material].name);
   }
-  text += "sequences:\n";
-  for (const model::Sequence& sequence : sequences) text += as_yaml(sequence);
-  print_or_write(text, std::move(output));
+  print_or_write(text + packing::format_sequences_yaml(sequences), std::move(output));
   return kSuccess;
+}
+
+constexpr const char* kReadHelp =
+    R"(A table as people keep it becomes a CSV of orders (docs/formats.md): commas, semicolons or tabs between columns, headings in
+English, German, Dutch or French, in any order, units in headings or behind numbers. What the sheet does not say has to be said;
+the error names the options and what each would mean for the first box.
+Example:
+  snug items read scenarios/examples/sheet.csv --length-unit cm --mass-unit g -o orders.csv)";
+
+constexpr const char* kReduceHelp =
+    R"(Report section 3.1.1: boxes of nearly equal size and mass become one, the most frequent of these are kept, and it is
+said how many of all boxes have a representative near their size. ORDERS is a CSV with a header or JSON in the BED-BPP form.
+Example:
+  snug items reduce scenarios/orders-example.csv --count 4 -o types.yaml)";
+
+constexpr const char* kSequenceHelp =
+    R"(Report section 3.1.2: boxes of the scenario in random order, as few as reach the theoretical filling degree.
+Examples:
+  snug items sequence scenarios/box-demonstrator.yaml --fill 90 --sequences 5 --seed 7 -o sequences.yaml
+  snug items reduce scenarios/orders-example.csv --count 4 -o types.yaml
+  snug items sequence scenarios/box-demonstrator.yaml --types types.yaml --fill 90 -o sequences.yaml
+  snug pack scenarios/box-demonstrator.yaml --items sequences.yaml --sequence drawn-1
+  snug items sequence scenarios/box-demonstrator.yaml --all --name random --sequences 50 -o random.yaml)";
+
+constexpr const char* kDrawHelp =
+    R"(Ten sizes of folding boxes that shops stock, smaller ones more frequent, 120 to 350 kg/m^3: assumed, to begin with where
+there are no orders yet. An order has a third more or less boxes than wanted. The same seed gives the same orders.
+Example:
+  snug items draw --orders 3 --boxes 20 --seed 1 -o typical-1.csv)";
+
+constexpr const char* kItemsHelp =
+    R"(Examples:
+  snug items draw --orders 3 --boxes 20 --seed 1 -o typical-1.csv
+  snug items read scenarios/examples/sheet.csv --length-unit cm --mass-unit g -o orders.csv
+  snug items reduce scenarios/orders-example.csv --count 4 -o types.yaml
+  snug items sequence scenarios/box-demonstrator.yaml --types types.yaml --fill 90 -o sequences.yaml
+  snug pack scenarios/box-demonstrator.yaml --items sequences.yaml --sequence drawn-1
+`snug items draw --help`, `snug items read --help`, `snug items reduce --help` and `snug items sequence --help` tell more.)";
+
+void add_result(const Verb& verb, std::optional<std::string>& output, const char* value) {
+  verb.option("-o,--output", output, value, "file to write instead of stdout");
+}
+
+void add_draw(const Verb& items) {
+  const Verb verb = items.part("draw", "typical orders, drawn by a seed", kDrawHelp);
+  ItemsDrawOptions& options = verb.runs(run_items_draw);
+  verb.option("--orders", options.wanted.orders, "N", "how many", whole(1, model::kMostTypicalOrders));
+  verb.option("--boxes", options.wanted.boxes, "N", "of an order, on average", whole(1, model::kMostTypicalBoxes));
+  verb.option("--seed", options.wanted.seed, "N", "", whole(0));
+  add_result(verb, options.output, "FILE.csv");
+}
+
+void add_read(const Verb& items) {
+  const Verb verb = items.part("read", "a table of boxes as people keep it, as a CSV of orders", kReadHelp);
+  ItemsReadOptions& options = verb.runs(run_items_read);
+  verb.option("sheet", options.sheet, "SHEET.csv", "table with a header").required();
+  verb.option("--length-unit", options.answers.length, "UNIT",
+              "of edges for which the sheet has no unit: mm, cm, m or in", one_of({"mm", "cm", "m", "in"}));
+  verb.option("--mass-unit", options.answers.mass, "UNIT", "of masses for which the sheet has no unit: kg, g or lb",
+              one_of({"kg", "g", "lb"}));
+  verb.option("--decimal", options.answers.decimal, "MARK",
+              "what stands before decimals where it is unclear: point or comma", one_of({"point", "comma"}));
+  add_result(verb, options.output, "FILE.csv");
+}
+
+void add_reduce(const Verb& items) {
+  const Verb verb = items.part("reduce", "few boxes that stand for those of many orders", kReduceHelp);
+  ItemsReduceOptions& options = verb.runs(run_items_reduce);
+  verb.option("orders", options.orders, "ORDERS", "orders").required();
+  verb.option("--count", options.count, "N", "representatives wanted", whole(1, kMostRuns));
+  verb.option("--group", options.group_percent, "PERCENT", "boxes join whose edges and mass differ by at most so much",
+              within(1e-3, 1000.0));
+  verb.option("--cover", options.cover_percent, "PERCENT",
+              "a box is represented when its edges differ by at most so much", positive());
+  verb.flag("--json", options.json, "print JSON");
+  verb.option("-o,--output", options.output, "FILE.yaml", "file for the representatives as parcel types of a scenario");
+}
+
+void add_sequence(const Verb& items) {
+  const Verb verb = items.part("sequence", "random orders of a scenario's boxes", kSequenceHelp);
+  ItemsSequenceOptions& options = verb.runs(run_items_sequence);
+  add_scenario(verb, options.scenario);
+  verb.option("--fill", options.fill_percent, "PERCENT", "volume of the boxes, of the target container's",
+              within(1e-3, 1000.0));
+  const OptionRow all = verb.flag("--all", options.all,
+                                  "every box of the scenario once, whatever they fill: the sequences that compare "
+                                  "--random draws with the same seed and --name random");
+  const OptionRow types =
+      verb.option("--types", options.types, "FILE.yaml",
+                  "draw new boxes of these types (as written by items reduce) instead of the scenario's boxes");
+  all.excludes(types);
+  verb.option("--sequences", options.sequences, "N", "how many", whole(1, kMostSequences));
+  verb.option("--name", options.name, "NAME", "the sequences are NAME-1, NAME-2, ...");
+  verb.option("--repeat", options.repeat, "0..1", "probability that a box is of the type of the one before",
+              within(0.0, 1.0));
+  verb.flag("--any-side-up", options.any_side_up, "boxes arrive standing on any side, not only with Z up");
+  verb.option("--seed", options.seed, "N", "", whole(0));
+  add_result(verb, options.output, "FILE.yaml");
+}
+
+}  // namespace
+
+void add_items(CLI::App& app, Action& action) {
+  const Verb verb(app, action, "items", "tables of boxes, boxes that stand for many, and sequences of boxes",
+                  kItemsHelp);
+  add_draw(verb);
+  add_read(verb);
+  add_reduce(verb);
+  add_sequence(verb);
 }
 
 }  // namespace snug::app

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "apps/snug/command_line/outputs.hpp"
-#include "apps/snug/command_line/verb.hpp"
 #include "snug/click/keys.hpp"
 #include "snug/core/input_error.hpp"
 

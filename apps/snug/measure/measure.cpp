@@ -2,14 +2,12 @@
 #include "apps/snug/command_line/verbs.hpp"
 
 #include <cstdint>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/snug/command_line/outputs.hpp"
-#include "apps/snug/command_line/verb.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/validation/measure.hpp"
@@ -28,25 +26,6 @@ struct MeasureOptions {
 };
 
 using Json = nlohmann::ordered_json;
-
-Json clock_as_json(const validation::ClockTruth& clock) {
-  return {{"offset_s", clock.offset}, {"rate_ppm", 1e6 * clock.rate}};
-}
-
-Json truth_as_json(const std::string& name, const validation::MeasureTruth& truth) {
-  const Vector6 bias = as_vector(truth.bias);
-  const Quaternion quat(truth.X_MW.R);
-  return {{"name", name},
-          {"clocks",
-           {{"motion_capture", clock_as_json(truth.motion_capture)},
-            {"force_torque", clock_as_json(truth.force_torque)},
-            {"encoders", clock_as_json(truth.encoders)}}},
-          {"bias", {{"force_N", {bias[0], bias[1], bias[2]}}, {"torque_Nm", {bias[3], bias[4], bias[5]}}}},
-          {"X_MW",
-           {{"p", {truth.X_MW.p.x(), truth.X_MW.p.y(), truth.X_MW.p.z()}},
-            {"quat_wxyz", {quat.w(), quat.x(), quat.y(), quat.z()}}}},
-          {"lost_bodies", truth.lost_bodies}};
-}
 
 int run_measure(const MeasureOptions& options) {
   if (options.recordings.size() > 1 && options.repetitions > 1)
@@ -76,7 +55,7 @@ int run_measure(const MeasureOptions& options) {
       settings.repetition = static_cast<int>(i) + k + 1;
       const validation::VirtualMeasurement measured = validation::measure(run, sensors, settings);
       writer.add(measured.recording);
-      truth["repetitions"].push_back(truth_as_json(measured.recording.name, measured.truth));
+      truth["repetitions"].push_back(Json::parse(validation::format_json(measured.truth, measured.recording.name)));
     }
   }
   writer.close();

@@ -4,28 +4,23 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/shipped.hpp"
-#include "apps/snug/command_line/stop_signal.hpp"
 #include "apps/snug/command_line/version.hpp"
-#include "apps/snug/common/robot_warnings.hpp"
+#include "snug/commands/stop_signal.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
-#include "snug/core/write_file.hpp"
 #include "snug/motion/program_csv.hpp"
 #include "snug/packing/python_agent.hpp"
 #include "snug/packing/representatives.hpp"
 #include "snug/robot/load_arm.hpp"
 #include "snug/runs/result_json.hpp"
-#include "snug/runs/run_table.hpp"
 #include "snug/serve/live_file.hpp"
 #include "snug/study/monte_carlo.hpp"
 #include "snug/study/trial_report.hpp"
@@ -48,15 +43,7 @@ std::optional<packing::FutureModel> choose_future(const std::string& which, cons
   return std::nullopt;
 }
 
-/// The plant as the session before left it.
-simulated_plant::TakenUp take_up(const session::ResumePoint& point) {
-  simulated_plant::TakenUp begin{point.time, point.item_count(), {}};
-  for (const session::event::Standing& box : point.boxes) {
-    const std::vector<model::ParcelId>& items = point.started().items;
-    begin.boxes.emplace_back(items[box.item.slot()], box.X_WP);
-  }
-  return begin;
-}
+void tell_line(const std::string& line) { std::fprintf(stderr, "snug: %s\n", line.c_str()); }
 
 /// What who operates says, as it comes.
 session::OperatorSource read_operator(const PackOptions& options, const model::Scenario& scenario) {
@@ -64,21 +51,20 @@ session::OperatorSource read_operator(const PackOptions& options, const model::S
   if (const model::Sequence* sequence = model::find_sequence(scenario, options.sequence)) {
     for (const model::Item& item : sequence->items) items.push_back(item.parcel);
   }
-  const auto warn = [](const std::string& text) { std::fprintf(stderr, "snug: %s\n", text.c_str()); };
-  const auto file = std::make_shared<session::OperatorFile>(*options.operator_file, std::move(items), warn);
+  const auto file = std::make_shared<session::OperatorFile>(*options.operator_file, std::move(items), tell_line);
   return [file] { return file->read(); };
 }
 
-/// What only a robot at ur://HOST has.
-void refuse_options_of_a_robot(const PackOptions& options) {
-  if (options.plant.starts_with("ur://")) return;
-  const auto refuse = [](const char* option, const std::string& got) {
-    throw InputError("command line", option, got, "nothing, unless --plant ur://HOST");
+/// Throws InputError for options that only a simulated plant has.
+void expect_options_of_a_served_plant(const PackOptions& options, const session::SessionOptions& session) {
+  const auto refuse = [](const char* option, const std::string& got, const char* expected) {
+    throw InputError("command line", option, "'" + got + "'", expected);
   };
-  if (options.observe) refuse("--observe", "'" + *options.observe + "'");
-  if (options.is_dry) refuse("--dry-run", "");
-  if (options.is_in_lockstep) refuse("--lockstep", "");
-  if (options.may_move) refuse("--yes-this-moves-a-robot", "");
+  if (!options.plant_set.empty()) {
+    refuse("--plant-set", options.plant_set.front(), "nothing: a served cell is what `snug serve --set` says");
+  }
+  if (!options.fault.empty()) refuse("--fault", options.fault, "no faults: they are made in a simulated plant alone");
+  if (session.simulation.robot.empty()) refuse("--robot", "none", "the scenario's robot: a served plant has one");
 }
 
 /// The files that were asked for, reserved before the work begins.
@@ -128,50 +114,17 @@ study::MonteCarloResult repeat_program(const PackOptions& options, const model::
   return study::repeat(scenario, options.sequence, result.program, result.plan, monte_carlo);
 }
 
-/// Empty, or why the run failed.
-std::string failure_of(const session::SessionResult& result, const study::MonteCarloResult& repeated,
-                       bool wants_program) {
-  if (!result.failure.text.empty()) return result.failure.text;
-  const std::vector<std::string> rejected = session::rejected_items(result);
-  if (!rejected.empty()) return fmt::format("the load is not as it has to be: {}", fmt::join(rejected, "; "));
-  if (result.stop_reason == session::StopReason::NoFrame && !result.stopped.empty()) return result.stopped;
-  if (repeated.failed > 0)
-    return fmt::format("{} of {} repeated runs did not reach their end", repeated.failed, repeated.count);
-  if (wants_program && result.program.waypoints.empty()) return "nothing was packed: no program, no recording";
-  return {};
+study::Trial run_elsewhere(const PackOptions& options, const model::Scenario& scenario,
+                           const session::SessionOptions& session,
+                           const simulated_plant::SimulatedPlantOptions& simulated,
+                           const study::TrialProgress& progress, const study::TrialFiles& files) {
+  expect_options_of_a_served_plant(options, session);
+  const remote_runs::RemoteRun run{scenario, options.sequence, session, progress, files, tell_line};
+  return options.plant.is_robot() ? remote_runs::run_ur_trial(options.plant, run, simulated)
+                                  : remote_runs::run_served_trial(options.plant, run);
 }
 
 }  // namespace
-
-simulated_plant::LiveRecordingOptions recording_of(const simulated_plant::SimulatedPlantOptions& plant,
-                                                   const std::string& agent, OutputFile& file,
-                                                   const std::string& address) {
-  const std::string& robot = plant.simulation.robot;
-  simulated_plant::LiveRecordingOptions recording;
-  recording.file = &file;
-  recording.version = version_text();
-  nlohmann::ordered_json settings{{"cup", "phases"},
-                                  {"controller", motion::name_of(plant.simulation.tracking)},
-                                  {"corrections", "none"},
-                                  {"robot", robot.empty() ? "none" : robot}};
-  if (address.empty())
-    settings["plant_seed"] = plant.seed;
-  else
-    settings["plant"] = address;
-  settings["agent"] = agent;
-  recording.settings_json = settings.dump();
-  return recording;
-}
-
-model::Sequence draw_order(const model::Scenario& scenario, const std::string& name, std::uint64_t seed) {
-  if (model::find_sequence(scenario, name) != nullptr) {
-    throw InputError("command line", "random order", "a scenario with a sequence " + name, "a name of its own");
-  }
-  packing::SequenceSettings settings;
-  settings.repeat = 0.0;
-  settings.all = true;
-  return packing::draw_sequence(scenario, name, settings, Rng(seed).split("sequence " + name));
-}
 
 session::SessionOptions make_session_options(const PackOptions& options, const SourcedScenario& loaded) {
   session::SessionOptions session;
@@ -198,8 +151,8 @@ session::SessionOptions make_session_options(const PackOptions& options, const S
 simulated_plant::SimulatedPlantOptions make_plant_options(const PackOptions& options,
                                                           const session::SessionOptions& session) {
   simulated_plant::SimulatedPlantOptions plant;
-  plant.seed = options.plant_seed;
-  plant.perception = perception::kind_of(options.perception);
+  plant.seed = options.plant.seed;
+  plant.perception = perception::kind_of(options.plant.perception);
   plant.faults = simulated_plant::parse_faults(options.fault);
   for (const std::string& words : options.plant_set) plant.set.push_back(model::parse_key_value(words, "--plant-set"));
   plant.simulation = session.simulation;
@@ -220,18 +173,18 @@ int run_pack(const PackOptions& options) {
   SourcedScenario loaded = load_with_sources(options.scenario, options.changes);
   model::Scenario& scenario = loaded.scenario;
   if (options.random_seed) {
-    scenario.sequences.push_back(draw_order(scenario, options.sequence, *options.random_seed));
+    scenario.sequences.push_back(packing::draw_order(scenario, options.sequence, *options.random_seed));
   }
   session::SessionOptions session = make_session_options(options, loaded);
   simulated_plant::SimulatedPlantOptions plant = make_plant_options(options, session);
   if (options.resume) {
     session.resume = session::find_resume_point(session::load_log(*options.resume), *options.resume);
-    plant.taken_up = take_up(*session.resume);
+    plant.taken_up = study::take_up(*session.resume);
   }
   if (options.operator_file) session.operator_orders = read_operator(options, scenario);
-  const bool is_served = options.plant != "simulated";
-  refuse_options_of_a_robot(options);
-  if (!is_served) (void)make_frames(options, scenario);  // says that it cannot be
+  const bool is_served = options.plant.is_served();
+  remote_runs::refuse_options_of_a_robot(options.plant);
+  if (!is_served) (void)remote_runs::make_frames(options.plant, scenario, is_interrupted);  // says that it cannot be
   PackFiles files(options, scenario);
   if (files.log) session.log = [&files](const session::SessionEvent& one) { files.log->write(one); };
   if (options.save_beliefs) session.save_beliefs = *options.save_beliefs;
@@ -239,7 +192,8 @@ int run_pack(const PackOptions& options) {
   const study::TrialProgress line = make_progress_line("sequence " + options.sequence);
   const bool is_known = model::find_sequence(scenario, options.sequence) != nullptr;  // else the trial says so
   if (!options.json && is_known) {
-    print_now(study::format_pack_head(options.sequence, session, plant, is_served ? options.plant : std::string()));
+    print_now(
+        study::format_pack_head(options.sequence, session, plant, is_served ? options.plant.address : std::string()));
   }
   const auto progress = [&](const study::Trial& so_far, int item, int items) {
     if (files.plan) files.update_plan(study::format_plan(so_far.session, false));
@@ -247,22 +201,22 @@ int run_pack(const PackOptions& options) {
     if (options.json && line) line(so_far, item, items);
   };
   study::TrialFiles written;
-  const bool is_elsewhere = is_served && !options.is_dry;
+  const bool is_elsewhere = is_served && !options.plant.is_dry;
   if (files.record)
-    written.recording = recording_of(plant, session.agent, *files.record, is_elsewhere ? options.plant : std::string());
+    written.recording = study::recording_of(plant, session.agent, version_text(), *files.record,
+                                            is_elsewhere ? options.plant.address : std::string());
   if (files.live && written.recording) written.recording->observer = &*files.live;
   written.describe = [](const runs::RunResult& one) { return runs::format_result(one); };
   if (files.program) written.program = &*files.program;
-  const study::Trial trial =
-      options.plant.starts_with("ur://") ? run_ur_trial(options, scenario, session, plant, progress, written)
-      : is_served                        ? run_served_trial(options, scenario, session, progress, written)
-                  : study::run_trial(scenario, options.sequence, session, plant, progress, written);
+  const study::Trial trial = is_served
+                                 ? run_elsewhere(options, scenario, session, plant, progress, written)
+                                 : study::run_trial(scenario, options.sequence, session, plant, progress, written);
   if (files.live) files.live->finish();
   const session::SessionResult& result = trial.session;
   const study::MonteCarloResult repeated = repeat_program(options, scenario, session, result);
   if (files.plan) files.finish_plan(study::format_plan(result, true));
   print(options.json ? study::format_json(trial, repeated) : study::format_summary(trial, repeated));
-  const std::string failure = failure_of(result, repeated, options.program || options.record);
+  const std::string failure = study::find_failure(result, repeated, options.program || options.record);
   if (result.stop_reason == session::StopReason::Interrupted) {
     std::fprintf(stderr, "snug: interrupted after %zu items\n", result.items.size());
   }

@@ -1,6 +1,4 @@
 // pack: what may be said after the verb.
-#include "apps/snug/command_line/options.hpp"
-#include "apps/snug/command_line/ranges.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/verbs.hpp"
 #include "apps/snug/pack/pack.hpp"
@@ -33,13 +31,14 @@ Programs of such a run need the same --items, --container and --pallet in simula
 
 /// Of --perception frames.
 void add_frame_options(const Verb& verb, PackOptions& options) {
-  verb.option("--frames", options.frames, "DIR|COMMAND",
+  verb.option("--frames", options.plant.frames, "DIR|COMMAND",
               "of --perception frames: a folder in which a frame appears at each look, or a command that leaves one: "
               "{frame} is its path without ending, {look} its number; no shell runs it (docs/camera.md)");
-  verb.option("--frames-timeout", options.frames_patience, "SECONDS", "how long a frame may take", within(0.01, 1e5));
-  verb.option("--frames-camera", options.frames_camera, "FILE",
+  verb.option("--frames-timeout", options.plant.frames_patience, "SECONDS", "how long a frame may take",
+              within(0.01, 1e5));
+  verb.option("--frames-camera", options.plant.frames_camera, "FILE",
               "optics, unit, axes and pose of the camera that takes them, whatever the frames say: JSON or YAML");
-  verb.option("--frames-unit", options.frames_unit, "M", "metres of a step of grey, or of a coordinate",
+  verb.option("--frames-unit", options.plant.frames_unit, "M", "metres of a step of grey, or of a coordinate",
               within(1e-7, 1.0));
 }
 
@@ -49,7 +48,7 @@ void add_packing_options(const Verb& verb, PackOptions& options) {
   add_scenario_changes(verb, options.changes);
   verb.option("--seed", options.seed, "N",
               "seed of the planner: roll-outs and sampled worlds (default: the scenario's)", whole(0));
-  verb.option("--plant-seed", options.plant_seed, "N",
+  verb.option("--plant-seed", options.plant.seed, "N",
               "seed of the simulated plant: the cell that is packed, drawn from the scenario's `uncertainty`; 0: the "
               "cell is exactly what the scenario says. A served plant has its own: snug serve --plant-seed",
               whole(0));
@@ -58,7 +57,7 @@ void add_packing_options(const Verb& verb, PackOptions& options) {
               "contacts.pairs.box/container.friction=0.15; may be given several times")
       .one_each();
   verb.option(
-      "--perception", options.perception, "HOW",
+      "--perception", options.plant.perception, "HOW",
       "what is seen of boxes: exact poses and sizes, noisy ones (2 mm, 20 mrad), none (dead-reckoning), or what the "
       "scenario's camera over the container tells, or frames of a camera that exists: --frames (docs/camera.md)",
       one_of({"exact", "noisy", "dead-reckoning", "camera", "frames"}));
@@ -104,24 +103,24 @@ void add_pack(CLI::App& app, Action& action) {
               one_of(packing::agent_names(), "module:Class"));
   verb.option("--agent-timeout", options.agent_patience, "SECONDS",
               "how long an agent in Python may take to start, and for each answer", within(0.01, 1e6));
-  verb.option("--plant", options.plant, "simulated|ADDRESS",
+  verb.option("--plant", options.plant.address, "simulated|ADDRESS",
               "what is packed: simulated, in this program, or a cell that `snug serve` serves in another one, here or "
               "elsewhere: click://HOST:PORT, click+ipc://PATH (docs/click.md), or through a robot of Universal Robots: "
               "ur://HOST, or ur://HOST:N with N added to its ports (docs/ur.md)");
-  verb.option("--observe", options.observe, "ADDRESS",
+  verb.option("--observe", options.plant.observe, "ADDRESS",
               "of ur://HOST: where boxes are told, tcp://HOST:PORT or ipc://PATH as `snug serve --ur --observers` has "
               "it; the perceptions exact, noisy and camera need it");
-  verb.flag("--dry-run", options.is_dry,
+  verb.flag("--dry-run", options.plant.is_dry,
             "of ur://HOST: a simulated plant is packed, and the robot makes each motion first, 20 mm higher, at a "
             "quarter of the speed, without vacuum");
-  verb.flag("--lockstep", options.is_in_lockstep,
+  verb.flag("--lockstep", options.plant.is_in_lockstep,
             "of ur://HOST: a served cell makes a period when this program says so, as fast as both go, and waits else: "
             "the same run each time");
-  verb.flag("--yes-this-moves-a-robot", options.may_move,
+  verb.flag("--yes-this-moves-a-robot", options.plant.may_move,
             "of ur://HOST: demanded for every address but this machine's own");
-  verb.option("--part-timeout", options.part_patience, "SECONDS",
+  verb.option("--part-timeout", options.plant.part_patience, "SECONDS",
               "of ur://HOST: how long a box may take to come to the aligner", within(0.1, 1e6));
-  add_client(verb, options.client, "--plant-timeout");
+  add_client(verb, options.plant.keys, options.plant.patience, "--plant-timeout");
   add_packing_options(verb, options);
   add_frame_options(verb, options);
   verb.option("--monte-carlo", options.monte_carlo, "N",

@@ -9,12 +9,10 @@
 #include <vector>
 
 #include "apps/snug/command_line/outputs.hpp"
-#include "apps/snug/command_line/ranges.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/shipped.hpp"
-#include "apps/snug/command_line/verb.hpp"
-#include "apps/snug/common/choose_camera.hpp"
 #include "snug/box_estimation/estimate_text.hpp"
+#include "snug/camera/camera_file.hpp"
 #include "snug/camera/frame_file.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
@@ -42,7 +40,7 @@ struct PerceiveOptions {
 
 camera::FrameHints make_hints(const PerceiveOptions& options, const model::Scenario& scenario) {
   camera::FrameHints hints;
-  hints.camera = choose_camera(scenario, options.camera, options.scenario);
+  hints.camera = camera::choose_camera(scenario, options.camera, options.scenario);
   hints.camera_is_given = options.use_scenario_camera || !options.intrinsics.empty();
   hints.depth_unit = options.depth_unit;
   hints.points_are_in_camera = options.points_in_camera;

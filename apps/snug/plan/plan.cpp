@@ -1,15 +1,12 @@
 // plan: one decision of a session once more, from the belief that it was made on.
 #include "apps/snug/command_line/verbs.hpp"
 
-#include <algorithm>
 #include <optional>
 #include <string>
 
 #include "apps/snug/command_line/outputs.hpp"
-#include "apps/snug/command_line/ranges.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/shipped.hpp"
-#include "apps/snug/command_line/verb.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/packing/python_agent.hpp"

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "apps/snug/command_line/outputs.hpp"
-#include "apps/snug/command_line/verb.hpp"
 #include "apps/snug/common/recordings.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
@@ -31,10 +30,7 @@ struct PlotOptions {
 };
 
 int run_plot(const PlotOptions& options) {
-  if (options.recordings.size() > 2) {
-    throw InputError("command line", "recordings", std::to_string(options.recordings.size()) + " of them",
-                     "one, or one and another to lay over it");
-  }
+  expect_one_or_two(options.recordings);
   if (options.width_mm < 40.0 || options.width_mm > 2000.0 || options.height_mm < 10.0 || options.height_mm > 2000.0) {
     throw InputError("command line", "--width, --height", "a drawing that nobody could read",
                      "40 to 2000 mm wide, 10 to 2000 mm high");

@@ -8,9 +8,7 @@
 #include "apps/snug/command_line/scenario_options.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/shipped.hpp"
-#include "apps/snug/command_line/verb.hpp"
 #include "snug/core/input_error.hpp"
-#include "snug/core/write_file.hpp"
 #include "snug/motion/program_csv.hpp"
 #include "snug/motion/waypoint.hpp"
 #include "snug/session/task.hpp"
@@ -38,12 +36,7 @@ int run_program(const ProgramOptions& options) {
     std::fprintf(stderr, "snug: no program: %s\n", program.error().text.c_str());
     return kRunFailed;
   }
-  const std::string text = motion::format_program(*program);
-  if (output) {
-    write_file(std::move(*output), text);
-  } else {
-    print(text);
-  }
+  print_or_write(motion::format_program(*program), std::move(output));
   return kSuccess;
 }
 

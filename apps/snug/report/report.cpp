@@ -2,17 +2,13 @@
 #include "apps/snug/command_line/verbs.hpp"
 
 #include <cstdio>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/snug/command_line/outputs.hpp"
-#include "apps/snug/command_line/ranges.hpp"
-#include "apps/snug/command_line/verb.hpp"
 #include "apps/snug/command_line/viewer_page.hpp"
 #include "apps/snug/common/recordings.hpp"
-#include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/replay/replay.hpp"
 #include "snug/report/recordings_page.hpp"
@@ -28,10 +24,7 @@ struct ReportOptions {
 };
 
 int run_report(const ReportOptions& options) {
-  if (options.recordings.size() > 2) {
-    throw InputError("command line", "recordings", std::to_string(options.recordings.size()) + " of them",
-                     "one, or one and another to lay over it");
-  }
+  expect_one_or_two(options.recordings);
   NamedFiles inputs = name_all("a recording", options.recordings);
   add_file(inputs, "--urdf", options.urdf);
   OutputFile output = reserve(inputs, options.output);

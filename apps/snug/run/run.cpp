@@ -6,13 +6,9 @@
 #include <cstdio>
 #include <string>
 
-#include "apps/snug/command_line/ranges.hpp"
-#include "apps/snug/command_line/shared_options.hpp"
-#include "apps/snug/command_line/stop_signal.hpp"
-#include "apps/snug/command_line/verb.hpp"
 #include "apps/snug/serve/serve.hpp"
-#include "apps/snug/serve/serve_ur.hpp"
 #include "apps/snug/serve/served_runs.hpp"
+#include "snug/commands/stop_signal.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/served_ur/controller.hpp"

@@ -1,19 +1,16 @@
 // serve: the cell as a CLICK simulator that controllers in other programs drive.
 #include "apps/snug/serve/serve.hpp"
-#include "apps/snug/command_line/ranges.hpp"
 #include "apps/snug/command_line/verbs.hpp"
 
 #include <unistd.h>
 
-#include <charconv>
 #include <cstdio>
-#include <exception>
 
 #include "apps/snug/command_line/shared_options.hpp"
-#include "apps/snug/command_line/stop_signal.hpp"
-#include "apps/snug/serve/serve_ur.hpp"
 #include "apps/snug/serve/served_runs.hpp"
+#include "snug/commands/stop_signal.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/served_cell/step_lines.hpp"
 
 namespace snug::app {
 namespace {
@@ -26,38 +23,6 @@ control::DriveKind kind_of(const std::string& word) {
          : word == "velocity" ? control::DriveKind::Speed
                               : control::DriveKind::Torque;
 }
-
-/// What is typed on stdin, a line at a time: how many steps may be done.
-class StepLines {
- public:
-  int read() {
-    char bytes[256];
-    const ssize_t count = ::read(STDIN_FILENO, bytes, sizeof bytes);
-    if (count == 0) return -1;  // nobody will type any more
-    if (count > 0) text_.append(bytes, static_cast<std::size_t>(count));
-    int steps = 0;
-    for (std::size_t end = text_.find('\n'); end != std::string::npos; end = text_.find('\n')) {
-      const std::string line = text_.substr(0, end);
-      text_.erase(0, end + 1);
-      if (line == "c") return -1;
-      if (line == "r") return served_cell::kReset;
-      steps += steps_of(line);
-    }
-    if (text_.size() > 4096) text_.clear();
-    return steps;
-  }
-
- private:
-  static int steps_of(const std::string& line) {
-    if (line.empty()) return 1;
-    int steps = 0;
-    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), steps);
-    if (error == std::errc() && end == line.data() + line.size() && steps > 0 && steps <= 1000000) return steps;
-    std::fprintf(stderr, "snug: '%s': an empty line, a number of steps, c or r is expected\n", line.c_str());
-    return 0;
-  }
-  std::string text_;
-};
 
 class Serving {
  public:
@@ -89,7 +54,7 @@ class Serving {
       if (options_.once && has_run_) server_->stop();
     };
     server.steps_fd = STDIN_FILENO;
-    server.read_steps = [this] { return lines_.read(); };
+    server.read_steps = [this] { return lines_.read(STDIN_FILENO); };
     server_.emplace(*simulator_, std::move(server));
   }
 
@@ -123,7 +88,7 @@ class Serving {
 
   const ServeOptions& options_;
   ServedRuns runs_;
-  StepLines lines_;
+  served_cell::StepLines lines_{[](const std::string& text) { std::fprintf(stderr, "snug: %s\n", text.c_str()); }};
   bool has_run_ = false;
   std::optional<served_cell::Simulator> simulator_;
   std::optional<served_cell::Server> server_;

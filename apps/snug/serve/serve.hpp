@@ -10,6 +10,7 @@
 #include "apps/snug/command_line/verb.hpp"
 #include "snug/serve/server.hpp"
 #include "snug/served_cell/server.hpp"
+#include "snug/ur/robot_data.hpp"
 
 namespace snug::app {
 
@@ -50,5 +51,10 @@ struct ServeOptions {
 /// What `serve` and `run` have: scenario and its changes, --sequence, --plant-seed, --model, -o and --json.
 /// The row of --model.
 OptionRow add_cell(const Verb& verb, ServeOptions& options);
+
+/// One of those that --model offers.
+[[nodiscard]] ur::Model ur_model_of(const std::string& name);
+/// Serves until Ctrl-C, until a client shuts the controller down, or with `once` until the first run is over.
+[[nodiscard]] int run_serve_ur(const ServeOptions& options);
 
 }  // namespace snug::app

@@ -1,12 +1,12 @@
 // serve --ur: the cell as a controller of Universal Robots that any of its clients drives.
-#include "apps/snug/serve/serve_ur.hpp"
+#include "apps/snug/serve/serve.hpp"
 
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
-#include "apps/snug/command_line/stop_signal.hpp"
 #include "apps/snug/serve/served_runs.hpp"
+#include "snug/commands/stop_signal.hpp"
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/served_ur/server.hpp"

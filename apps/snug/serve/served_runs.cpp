@@ -7,14 +7,15 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/version.hpp"
 #include "apps/snug/command_line/viewer_page.hpp"
-#include "apps/snug/common/robot_warnings.hpp"
 #include "apps/snug/view/view.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/record/writer.hpp"
 #include "snug/runs/result_json.hpp"
 #include "snug/runs/run_table.hpp"
+#include "snug/serve/live_simulation.hpp"
 #include "snug/simulated_plant/simulated_plant.hpp"
 
 namespace snug::app {
@@ -24,22 +25,6 @@ std::string sequence_of(const ServeOptions& options, const model::Scenario& scen
   return options.sequence.value_or(scenario.sequences.front().name);
 }
 
-/// Takes boxes out of a sequence. Throws InputError for one that is not in it.
-void skip(model::Scenario& scenario, const std::string& sequence, const std::vector<std::string>& boxes) {
-  for (model::Sequence& one : scenario.sequences) {
-    if (one.name != sequence) continue;
-    for (const std::string& box : boxes) {
-      const auto is_it = [&](const model::Item& item) { return item.parcel == box; };
-      if (std::erase_if(one.items, is_it) > 0) continue;
-      std::vector<std::string> names;
-      for (const model::Item& item : one.items) names.push_back(item.parcel);
-      throw InputError(
-          "command line", "--skip", "'" + box + "'",
-          "a box of sequence " + sequence + ", nearest is '" + std::string(find_nearest(box, names)) + "'");
-    }
-  }
-}
-
 model::Scenario load(const ServeOptions& options, std::optional<double> tick) {
   model::Scenario scenario = load_changed(options.scenario, options.changes);
   if (tick) scenario.controller.tick = *tick;
@@ -47,7 +32,7 @@ model::Scenario load(const ServeOptions& options, std::optional<double> tick) {
   if (!scenario.robot) throw InputError(scenario.source_name, "robot", "", "a robot, to be driven");
   if (scenario.sequences.empty()) throw InputError(scenario.source_name, "sequences", "", "a sequence of boxes");
   print_robot_warnings(scenario);
-  skip(scenario, sequence_of(options, scenario), options.skipped);
+  model::leave_out(scenario, sequence_of(options, scenario), options.skipped);
   if (!options.plant_seed) return scenario;
   const std::string sequence = sequence_of(options, scenario);
   (void)cell::require_sequence(scenario, sequence);
@@ -68,27 +53,6 @@ std::string name_of_run(const std::string& path, int run) {
   return (file.parent_path() / (file.stem().string() + fmt::format("-{}", run) + file.extension().string())).string();
 }
 
-/// Shows one run after the other; lets them go on when there is nobody, or no room, to show them any more.
-class ShownRun : public runs::RunObserver {
- public:
-  explicit ShownRun(serve::LiveRun& live) : live_(live) {}
-  void begin(const record::RecordingHeader& header) override {
-    is_shown_ = true;
-    live_.begin(header);
-  }
-  bool add(const record::Frame& frame) override {
-    is_shown_ = is_shown_ && live_.add(frame);
-    return true;
-  }
-  void add(const record::Event& event) override {
-    if (is_shown_) live_.add(event);
-  }
-
- private:
-  serve::LiveRun& live_;
-  bool is_shown_ = true;
-};
-
 }  // namespace
 
 ServedRuns::ServedRuns(const ServeOptions& options, std::optional<double> tick)
@@ -106,7 +70,7 @@ ServedRuns::~ServedRuns() { end_page(); }
 void ServedRuns::begin_page() {
   if (!options_.shows) return;
   live_.emplace(std::filesystem::path(options_.scenario).stem().string(), 0.0);
-  shown_ = std::make_unique<ShownRun>(*live_);
+  shown_ = std::make_unique<serve::ShownRun>(*live_);
   page_.emplace(options_.page, serve::Content{std::string(viewer_page()), {}, &*live_, true});
   announce(page_->address(), !options_.is_quiet);
   page_thread_ = std::thread([this] { page_->run(); });

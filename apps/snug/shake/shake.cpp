@@ -7,11 +7,9 @@
 #include <string>
 
 #include "apps/snug/command_line/outputs.hpp"
-#include "apps/snug/command_line/ranges.hpp"
 #include "apps/snug/command_line/scenario_options.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/shipped.hpp"
-#include "apps/snug/command_line/verb.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"

@@ -1,16 +1,17 @@
 // simulate: loads what the options name, runs it, prints what became of it.
 #include "apps/snug/simulate/simulate.hpp"
-#include "apps/snug/command_line/ranges.hpp"
 #include "apps/snug/command_line/verbs.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 
 #include "apps/snug/command_line/shared_options.hpp"
+#include "apps/snug/command_line/shipped.hpp"
 #include "apps/snug/command_line/version.hpp"
-#include "apps/snug/common/robot_warnings.hpp"
-#include "apps/snug/simulate/repeated_runs.hpp"
+#include "apps/snug/study/study.hpp"
+#include "snug/cell/drawn_scenario.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/read_file.hpp"
@@ -22,6 +23,7 @@
 #include "snug/runs/result_json.hpp"
 #include "snug/runs/run.hpp"
 #include "snug/runs/run_table.hpp"
+#include "snug/study/repeated_runs.hpp"
 
 namespace snug::app {
 namespace {
@@ -97,11 +99,35 @@ NamedFiles files_of(const SimulateOptions& options, const model::Scenario& scena
 
 namespace {
 
+/// The words that all runs have.
+std::vector<std::string> common_words(const SimulateOptions& options, std::uint64_t seed) {
+  OptionWords words = words_of(options.changes);
+  const auto add = [&](const char* option, const auto& value) {
+    if (value) words.emplace_back(option, fmt::format("{}", *value));
+  };
+  add("--program", options.program);
+  add("--sequence", options.sequence);
+  add("--controller", options.motion.controller);
+  add("--tempo", options.motion.tempo);
+  add("--robot", options.robot);
+  words.emplace_back("--corrections", options.corrections);
+  add("--until", options.until);
+  add("--dt", options.physics.dt);
+  add("--cup", options.physics.cup);
+  add("--record-period", options.physics.record_period);
+  words.emplace_back("--seed", std::to_string(seed));
+  std::vector<std::string> flat;
+  for (const auto& [option, value] : words) flat.insert(flat.end(), {option, value});
+  return flat;
+}
+
 int run_repeatedly(const SimulateOptions& options, const model::Scenario& scenario, int threads) {
   if (options.record || options.csv) {
     throw InputError("command line", "--monte-carlo", "with --record or --csv", "one of them, or --draw");
   }
-  const std::vector<study::RepeatedRun> runs = repeat_runs(options, scenario.seed, *options.monte_carlo, threads);
+  const std::vector<study::RepeatedRun> runs =
+      study::repeat_runs(find_scenario(options.scenario), common_words(options, scenario.seed), *options.monte_carlo,
+                         threads, [](const std::vector<std::string>& words) { return run_row(words); });
   print(options.json ? study::format_json(runs) : study::format_table(runs));
   const auto failed = std::ranges::count_if(runs, [](const study::RepeatedRun& run) { return !run.failure.empty(); });
   if (failed == 0) return kSuccess;
@@ -117,7 +143,7 @@ int run_simulate(const SimulateOptions& options) {
     if (is_given && !run_options.program) throw InputError("command line", option, "no --program", "a program to run");
   }
   if (options.monte_carlo) return run_repeatedly(options, scenario, run_options.threads);
-  if (options.draw) scenario = draw_cell(scenario, run_options.sequence, *options.draw);
+  if (options.draw) scenario = cell::draw_run(scenario, run_options.sequence, *options.draw);
   NamedFiles outputs;
   add_file(outputs, "-o", options.record);
   add_file(outputs, "--csv", options.csv);

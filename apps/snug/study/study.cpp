@@ -1,22 +1,18 @@
 // study: rows are the program's own verbs, each in a process that is split off; tables and pages are the module's.
 #include "apps/snug/study/study.hpp"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "apps/snug/command_line/command_line.hpp"
 #include "apps/snug/command_line/outputs.hpp"
-#include "apps/snug/command_line/ranges.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
 #include "apps/snug/command_line/verbs.hpp"
 #include "apps/snug/command_line/version.hpp"
@@ -26,7 +22,7 @@
 #include "snug/study/effects.hpp"
 #include "snug/study/ray.hpp"
 #include "snug/study/run.hpp"
-#include "snug/study/slurm.hpp"
+#include "snug/study/study_text.hpp"
 
 namespace snug::app {
 namespace {
@@ -60,23 +56,6 @@ NamedFiles files_of(const StudyOptions& options, const study::Study& study, cons
   return files;
 }
 
-/// "12" or "3-7".
-std::pair<std::uint64_t, std::uint64_t> parse_chunks(const std::string& words, const study::Study& study) {
-  const char* const end = words.data() + words.size();
-  std::uint64_t first = 0, last = 0;
-  auto [at, error] = std::from_chars(words.data(), end, first);
-  last = first;
-  if (error == std::errc{} && at != end && *at == '-') {
-    const auto rest = std::from_chars(at + 1, end, last);
-    at = rest.ptr;
-    error = rest.ec;
-  }
-  if (error != std::errc{} || at != end || first > last || last >= study.chunks())
-    throw InputError("command line", "--chunks", "'" + words + "'",
-                     fmt::format("A or A-B, from 0 to {}", study.chunks() - 1));
-  return {first, last};
-}
-
 std::string this_program() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
@@ -91,16 +70,9 @@ int hand_over(const StudyOptions& options, const study::Study& study, const stud
     std::fprintf(stderr, "every row is done\n");
     return kSuccess;
   }
-  const fs::path script = folder.path() / (options.ray ? "ray-tasks.py" : "array.sh");
-  write_file(OutputFile(script),
-             options.ray ? study::ray_program(study, folder, plan, this_program(), options.file, *options.ray)
-                         : study::array_script(study, folder, plan, this_program(), options.file));
-  if (options.dry_run) {
-    print(script.string() + "\n");
-    return kSuccess;
-  }
-  if (!options.ray) {
-    print(study::submit(script) + "\n");
+  const fs::path script = study::write_tasks(study, folder, plan, this_program(), options.file, options.ray);
+  if (options.dry_run || !options.ray) {
+    print((options.dry_run ? script.string() : study::submit(script)) + "\n");
     return kSuccess;
   }
   const std::string python = python_interpreter();
@@ -124,7 +96,7 @@ int run_study(const StudyOptions& options) {
   const study::Study study = study::load_study(options.file);
   study::RunSettings settings;
   settings.version = version_text();
-  if (options.chunks) std::tie(settings.first_chunk, settings.last_chunk) = parse_chunks(*options.chunks, study);
+  if (options.chunks) std::tie(settings.first_chunk, settings.last_chunk) = study::parse_chunks(*options.chunks, study);
   if (options.dry_run && !options.slurm && !options.ray)
     throw InputError("command line", "--dry-run", "without --slurm or --ray", "one of them");
   const study::Folder folder(study, folder_of(options), true);
@@ -135,20 +107,8 @@ int run_study(const StudyOptions& options) {
   const study::RunSummary summary = study::run_study(
       study, folder, [](const std::vector<std::string>& words) { return run_row(words); }, settings);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  const double busy = wall.count() * std::min<double>(settings.processes,
-                                                      static_cast<double>(std::max<std::uint64_t>(1, summary.done)));
-  const double overhead = summary.row_seconds > 0.0 ? 100.0 * (busy - summary.row_seconds) / summary.row_seconds : 0.0;
-  if (options.json) {
-    const nlohmann::ordered_json json{{"study", study.name},          {"folder", folder.path().string()},
-                                      {"done", summary.done},         {"failed", summary.failed},
-                                      {"left_out", summary.left_out}, {"row_seconds", summary.row_seconds},
-                                      {"wall_seconds", wall.count()}, {"overhead_percent", overhead}};
-    print(json.dump(2) + "\n");
-  } else {
-    print(fmt::format(
-        "rows done now      {}, {} failed\nfolder             {}\nwall clock         {:.1f} s, {:.1f} s in rows\n",
-        summary.done, summary.failed, folder.path().string(), wall.count(), summary.row_seconds));
-  }
+  print(options.json ? study::format_run_json(study, folder, summary, wall.count(), settings.processes)
+                     : study::format_run_text(folder, summary, wall.count()));
   if (summary.left_out == 0) return kSuccess;
   std::fprintf(stderr,
                "snug: failed: %llu rows were left out: others are at work on them, or their processes were killed\n",
@@ -160,38 +120,14 @@ int run_study_status(const StudyOptions& options) {
   const study::Study study = study::load_study(options.file);
   const study::Folder folder(study, folder_of(options), false);
   const study::Status status = study::status_of(study, folder);
-  const double left = status.mean_seconds * static_cast<double>(status.rows - status.done);
-  if (options.json) {
-    const nlohmann::ordered_json json{{"study", study.name},
-                                      {"rows", status.rows},
-                                      {"done", status.done},
-                                      {"failed", status.failed},
-                                      {"chunks", status.chunks},
-                                      {"chunks_done", status.chunks_done},
-                                      {"mean_seconds", status.mean_seconds},
-                                      {"seconds_left_on_one_core", left}};
-    print(json.dump(2) + "\n");
-    return kSuccess;
-  }
-  print(fmt::format(
-      "rows               {} of {} done, {} failed\nchunks             {} of {} done\n"
-      "a row              {:.2f} s on average, {:.0f} s left on one core\n",
-      status.done, status.rows, status.failed, status.chunks_done, status.chunks, status.mean_seconds, left));
+  print(options.json ? study::format_status_json(study, status) : study::format_status_text(status));
   return kSuccess;
 }
 
 int run_study_merge(const StudyOptions& options) {
   const study::Study study = study::load_study(options.file);
   const study::Folder folder(study, folder_of(options), false);
-  OutputFile file = reserve(files_of(options, study, folder), *options.output);
-  const std::string ending = fs::path(*options.output).extension().string();
-  if (ending == ".csv") {
-    study::write_csv(study, folder, std::move(file));
-  } else if (ending == ".h5" || ending == ".hdf5") {
-    study::write_hdf5(study, folder, std::move(file));
-  } else {
-    throw InputError("command line", "-o", "'" + *options.output + "'", "a name that ends in .csv or .h5");
-  }
+  study::write_table(study, folder, *options.output, reserve(files_of(options, study, folder), *options.output));
   const study::Status status = study::status_of(study, folder);
   if (status.done < status.rows)
     std::fprintf(stderr, "%llu of %llu rows are not done yet\n",

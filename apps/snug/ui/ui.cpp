@@ -1,19 +1,27 @@
 // ui: a page to work in, served on this machine: scenarios, items and runs of a folder.
-#include "apps/snug/ui/ui.hpp"
-
 #include <filesystem>
 
 #include "apps/snug/command_line/shipped.hpp"
-#include "apps/snug/command_line/stop_signal.hpp"
+#include "apps/snug/command_line/verbs.hpp"
 #include "apps/snug/command_line/version.hpp"
 #include "apps/snug/command_line/workspace_page.hpp"
 #include "apps/snug/init/init.hpp"
 #include "apps/snug/view/view.hpp"
+#include "snug/commands/stop_signal.hpp"
 #include "snug/serve/api_server.hpp"
 #include "snug/workspace/service.hpp"
 
 namespace snug::app {
+namespace {
 
+struct UiOptions {
+  std::string folder = ".";
+  int port = 0;           ///< 0: any that is free
+  int runs = 1;           ///< at the same time
+  bool is_quiet = false;  ///< opens no browser
+};
+
+/// Serves until the program is told to stop (Ctrl-C).
 int run_ui(const UiOptions& options) {
   workspace::ServiceSettings settings;
   settings.folder = options.folder;
@@ -35,9 +43,29 @@ int run_ui(const UiOptions& options) {
                            {"/workspace.css", "text/css; charset=utf-8", std::string(workspace_style())}},
                           [&](const serve::ApiRequest& request) { return service.answer(request); });
   const StopSignal signal([&] { server.stop(); });
-  announce(server.address(), options.opens_browser);
+  announce(server.address(), !options.is_quiet);
   server.run();
   return kSuccess;
+}
+
+constexpr const char* kUiExamples = R"(Examples:
+  snug ui                                            # the folder that you are in
+  snug ui . --no-open                                # prints the address only
+The folder holds plain files that all other verbs read and write: scenarios (.yaml), orders (.csv), and of each run its
+command with what it printed (.txt), its log (.jsonl), recording (.h5), program (.program.csv) and, while it goes on,
+frames (.live).
+Ctrl-C ends the page and interrupts its runs. The page is served to this machine only, and to who knows the printed
+address with its token. Addresses for other programs: docs/ui.md.)";
+
+}  // namespace
+
+void add_ui(CLI::App& app, Action& action) {
+  const Verb verb(app, action, "ui", "a page to work in: items, cell, runs of a folder, in the browser", kUiExamples);
+  UiOptions& options = verb.runs(run_ui);
+  verb.option("folder", options.folder, "DIR", "where scenarios, items and runs are");
+  verb.option("--port", options.port, "N", "port to serve at; 0 any that is free", whole(0, 65535));
+  verb.option("--runs", options.runs, "N", "runs at the same time; the others wait", whole(1, kMostThreads));
+  verb.flag("--no-open", options.is_quiet, "open no browser, only say the address");
 }
 
 }  // namespace snug::app

@@ -1,19 +1,13 @@
 // validate: a simulation beside the measurements of its experiment.
 #include "apps/snug/command_line/verbs.hpp"
 
-#include <charconv>
-#include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
-#include "apps/snug/command_line/verb.hpp"
-#include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/validation/page.hpp"
 
@@ -26,33 +20,6 @@ struct ValidateOptions {
   std::vector<std::string> shifts;  ///< "SOURCE=SECONDS"
   bool json = false;
 };
-
-validation::HandShifts parse_shifts(const std::vector<std::string>& words) {
-  validation::HandShifts shifts;
-  const std::vector<std::string> sources = {"mocap", "ft", "robot"};
-  std::optional<double>* const targets[] = {&shifts.motion_capture, &shifts.force_torque, &shifts.robot};
-  for (const std::string& word : words) {
-    const std::size_t sign = word.find('=');
-    const std::string source = word.substr(0, sign);
-    const std::string_view text =
-        sign == std::string::npos ? std::string_view() : std::string_view(word).substr(sign + 1);
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool is_number = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
-    bool is_known = false;
-    for (std::size_t i = 0; i < sources.size(); ++i) {
-      if (source != sources[i]) continue;
-      is_known = true;
-      *targets[i] = value;
-    }
-    const std::string_view nearest = find_nearest(source, sources);
-    if (!is_known || !is_number)
-      throw InputError("command line", "--shift", "'" + word + "'",
-                       "mocap=SECONDS, ft=SECONDS or robot=SECONDS" +
-                           (is_known || nearest.empty() ? "" : "; did you mean " + std::string(nearest) + "?"));
-  }
-  return shifts;
-}
 
 void write_figures(const std::string& folder, const std::vector<validation::NamedFigure>& figures) {
   for (const validation::NamedFigure& figure : figures)
@@ -67,7 +34,7 @@ int run_validate(const ValidateOptions& options) {
   expect_distinct(inputs, outputs);
   std::optional<OutputFile> csv = reserve(options.csv), page = reserve(options.page);
   if (options.svg) make_folder("--svg", *options.svg);
-  const validation::HandShifts shifts = parse_shifts(options.shifts);
+  const validation::HandShifts shifts = validation::parse_hand_shifts(options.shifts);
   const validation::SimulatedRun run = validation::load_run(options.simulated);
   std::vector<validation::Window> windows;
   if (options.windows) windows = validation::load_windows(*options.windows, run);

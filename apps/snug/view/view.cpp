@@ -1,40 +1,24 @@
 // view: the page of the report, served on this machine: for recordings, or for a simulation that goes on.
 #include "apps/snug/view/view.hpp"
-#include "apps/snug/command_line/ranges.hpp"
 #include "apps/snug/command_line/verbs.hpp"
 
-#include <spawn.h>
-#include <sys/wait.h>
-
 #include <cstdio>
-#include <cstdlib>
-#include <exception>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "apps/snug/command_line/shared_options.hpp"
-#include "apps/snug/command_line/stop_signal.hpp"
+#include "apps/snug/command_line/version.hpp"
 #include "apps/snug/command_line/viewer_page.hpp"
 #include "apps/snug/common/recordings.hpp"
+#include "snug/commands/stop_signal.hpp"
 #include "snug/core/input_error.hpp"
-#include "snug/runs/result_json.hpp"
+#include "snug/core/text.hpp"
+#include "snug/remote_runs/watched_run.hpp"
 #include "snug/runs/run_table.hpp"
-
-extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leaves it to the program
+#include "snug/serve/live_simulation.hpp"
 
 namespace snug::app {
 namespace {
-
-void open_browser(const std::string& address) {
-  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
-  std::string program = "xdg-open", word = address;
-  char* words[] = {program.data(), word.data(), nullptr};
-  pid_t child = 0;
-  if (::posix_spawnp(&child, program.c_str(), nullptr, nullptr, words, environ) == 0) {
-    std::thread([child] { ::waitpid(child, nullptr, 0); }).detach();
-  }
-}
 
 int view_recordings(const ViewOptions& options) {
   serve::Content content;
@@ -47,67 +31,15 @@ int view_recordings(const ViewOptions& options) {
   return kSuccess;
 }
 
-/// The result without how long it took: a run that is watched waits for its watchers.
-std::string describe_watched(const runs::RunResult& result) {
-  auto json = nlohmann::ordered_json::parse(runs::format_result(result));
-  json.erase("wall_s");
-  json.erase("real_time_factor");
-  return json.dump(2) + "\n";
-}
-
-/// The simulation in a thread of its own; what it throws is thrown again by result().
-class LiveSimulation {
- public:
-  LiveSimulation(const ViewOptions& options, serve::LiveRun& live) : live_(live) {
-    scenario_ = load_with_overrides(options.run);
-    run_options_ = make_run_options(options.run, scenario_);
-    if (options.run.record) expect_distinct(files_of(options.run, scenario_), {{"-o", *options.run.record}});
-    record_ = reserve_recording(options.run.record);
-    if (record_) run_options_.record_file = &*record_;
-    run_options_.observer = &live;
-    run_options_.describe = describe_watched;
-  }
-  void start(std::function<void()> on_trouble) {
-    thread_ = std::thread([this, on_trouble = std::move(on_trouble)] {
-      try {
-        result_ = runs::run(scenario_, run_options_);
-        live_.finish(describe_watched(*result_), result_->failure.text, result_->is_interrupted);
-      } catch (const std::exception& error) {
-        trouble_ = std::current_exception();
-        live_.finish("", error.what());
-        on_trouble();
-      }
-    });
-  }
-  ~LiveSimulation() { join(); }
-  LiveSimulation(const LiveSimulation&) = delete;
-  LiveSimulation& operator=(const LiveSimulation&) = delete;
-
-  [[nodiscard]] const runs::RunResult& result() {
-    join();
-    if (trouble_) std::rethrow_exception(trouble_);
-    return *result_;
-  }
-
- private:
-  void join() {
-    live_.stop();
-    if (thread_.joinable()) thread_.join();
-  }
-
-  serve::LiveRun& live_;
-  model::Scenario scenario_;
-  runs::RunOptions run_options_;
-  std::optional<OutputFile> record_;
-  std::optional<runs::RunResult> result_;
-  std::exception_ptr trouble_;
-  std::thread thread_;
-};
-
 int view_live(const ViewOptions& options) {
   serve::LiveRun live(std::filesystem::path(options.run.scenario).stem().string(), options.speed);
   if (options.is_paused) live.pause();
-  LiveSimulation simulation(options, live);
+  model::Scenario scenario = load_with_overrides(options.run);
+  runs::RunOptions run = make_run_options(options.run, scenario);
+  if (options.run.record) expect_distinct(files_of(options.run, scenario), {{"-o", *options.run.record}});
+  std::optional<OutputFile> record = reserve_recording(options.run.record);
+  if (record) run.record_file = &*record;
+  serve::LiveSimulation simulation(std::move(scenario), std::move(run), live);
   serve::Server server(options.server, {std::string(viewer_page()), {}, &live});
   const StopSignal signal([&] {
     live.stop();
@@ -122,6 +54,32 @@ int view_live(const ViewOptions& options) {
   if (!result.failure) return kSuccess;
   std::fprintf(stderr, "snug: failed: %s\n", result.failure.text.c_str());
   return kRunFailed;
+}
+
+/// Serves a cell of another program while it is driven, until this one is told to stop (Ctrl-C).
+int view_served(const ViewOptions& options) {
+  const model::Scenario scenario = load_with_overrides(options.run);
+  if (scenario.sequences.empty()) throw InputError(scenario.source_name, "sequences", "", "a sequence of boxes");
+  remote_plant::WatchedCell cell(scenario, options.run.sequence.value_or(scenario.sequences.front().name),
+                                 *options.click, options.client.patience, click::find_client_keys(options.client.keys));
+  serve::LiveRun live(std::filesystem::path(options.run.scenario).stem().string(), 0.0);
+  serve::Server server(options.server, {std::string(viewer_page()), {}, &live, true});
+  remote_runs::WatchedRun watch(cell, live, version_text(), [&](const std::string& why) { live.finish("", why); });
+  const StopSignal signal([&] {
+    watch.stop();
+    live.stop();
+    server.stop();
+  });
+  std::string trouble;
+  std::thread looking([&] {
+    trouble = watch.run();
+    if (!trouble.empty())
+      std::fprintf(stderr, "snug: the cell is seen no more: %s\n", printable(trouble, kLongestMessage).c_str());
+  });
+  announce(server.address(), !options.is_quiet);
+  server.run();
+  looking.join();
+  return trouble.empty() ? kSuccess : kRunFailed;
 }
 
 void check_view_words(const ViewOptions& options) {
@@ -166,7 +124,7 @@ Who opens that has to know the whole address that is printed, with its token.)";
 
 void announce(const std::string& address, bool opens_browser) {
   std::fprintf(stderr, "snug: showing at %s (Ctrl-C ends it)\n", address.c_str());
-  if (opens_browser) open_browser(address);
+  if (opens_browser) serve::open_browser(address);
 }
 
 void add_view(CLI::App& app, Action& action) {

@@ -27,7 +27,5 @@ struct ViewOptions {
 
 /// Says on stderr where the page is, and opens it.
 void announce(const std::string& address, bool opens_browser);
-/// Serves a cell of another program while it is driven, until this one is told to stop (Ctrl-C).
-[[nodiscard]] int view_served(const ViewOptions& options);
 
 }  // namespace snug::app

@@ -4,7 +4,7 @@
 #include <functional>
 #include <thread>
 
-namespace snug::app {
+namespace snug::commands {
 
 /// From now on the first SIGINT, SIGTERM or SIGHUP only sets a flag: work ends in order, with what is done so far. The
 /// second one ends the program at once.
@@ -25,4 +25,4 @@ class StopSignal {
   std::thread thread_;
 };
 
-}  // namespace snug::app
+}  // namespace snug::commands

@@ -1,18 +1,16 @@
 // Checks of option values, with messages for people.
-#include "apps/snug/command_line/options.hpp"
+#include "snug/commands/checks.hpp"
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
 #include <sstream>
 #include <string_view>
 
-#include "apps/snug/command_line/ranges.hpp"
 #include "snug/core/input_error.hpp"
 
-namespace snug::app {
+namespace snug::commands {
 namespace {
 
 /// The name that validators of `one_of` carry, before the words: how completion in shells and the manual find them.
@@ -45,17 +43,11 @@ Check one_of(std::vector<std::string> words, const std::string& other) {
           name};
 }
 
-std::vector<std::string> choices_of(CLI::Option& option) {
+std::vector<std::string> choices_in(const std::string& name) {
   std::vector<std::string> words;
-  try {
-    for (int i = 0;; ++i) {
-      const std::string name = option.get_validator(i)->get_name();
-      if (name.rfind(kOneOf, 0) != 0) continue;
-      std::istringstream list(name.substr(kOneOf.size()));
-      for (std::string word; std::getline(list, word, ',');) words.push_back(word);
-    }
-  } catch (const CLI::OptionNotFound&) {  // the parser has no other way to say that there are no more
-  }
+  if (!name.starts_with(kOneOf)) return words;
+  std::istringstream list(name.substr(kOneOf.size()));
+  for (std::string word; std::getline(list, word, ',');) words.push_back(word);
   return words;
 }
 
@@ -109,4 +101,4 @@ Check within(double low, double high) {
           {}};
 }
 
-}  // namespace snug::app
+}  // namespace snug::commands

@@ -6,16 +6,12 @@
 #include <string>
 #include <vector>
 
-namespace CLI {
-class Option;
-}
-
-namespace snug::app {
+namespace snug::commands {
 
 /// Of one word: empty, or what is wrong with it.
 struct Check {
   std::function<std::string(const std::string&)> find_fault;
-  std::string name;  ///< by which `choices_of` knows it
+  std::string name;  ///< has the words of one_of(): choices_in()
   std::string operator()(const std::string& word) const { return find_fault(word); }
 };
 
@@ -23,8 +19,8 @@ struct Check {
 [[nodiscard]] Check one_of(std::vector<std::string> words);
 /// The same, or any word with a colon; `other` says in messages what that is.
 [[nodiscard]] Check one_of(std::vector<std::string> words, const std::string& other);
-/// The words of an option that was checked with `one_of`; else none.
-[[nodiscard]] std::vector<std::string> choices_of(CLI::Option& option);
+/// The words of a check that one_of() made, by its name; else none.
+[[nodiscard]] std::vector<std::string> choices_in(const std::string& name);
 /// A finite number above zero.
 [[nodiscard]] Check positive();
 /// A number that is none of inf and nan, such as an instant.
@@ -33,5 +29,7 @@ struct Check {
 [[nodiscard]] Check whole(std::uint64_t least);
 /// A whole number from `least` to `most`.
 [[nodiscard]] Check whole(std::uint64_t least, std::uint64_t most);
+/// A number from `low` to `high`.
+[[nodiscard]] Check within(double low, double high);
 
-}  // namespace snug::app
+}  // namespace snug::commands

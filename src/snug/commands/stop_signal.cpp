@@ -1,5 +1,5 @@
 // Ctrl-C ends long work in order: as a flag that is asked, or as a call from a thread of its own.
-#include "apps/snug/command_line/stop_signal.hpp"
+#include "snug/commands/stop_signal.hpp"
 
 #include <semaphore.h>
 #include <signal.h>
@@ -7,7 +7,7 @@
 #include <csignal>
 #include <utility>
 
-namespace snug::app {
+namespace snug::commands {
 namespace {
 
 sem_t g_stop;  ///< posted by the handler: one of the few things that a handler may do
@@ -59,4 +59,4 @@ StopSignal::~StopSignal() {
   ::sem_destroy(&g_stop);
 }
 
-}  // namespace snug::app
+}  // namespace snug::commands
