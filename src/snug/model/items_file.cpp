@@ -14,7 +14,7 @@
 #include "snug/core/read_file.hpp"
 #include "snug/core/text.hpp"
 #include "snug/core/units.hpp"
-#include "snug/model/internal/mass_properties.hpp"
+#include "snug/model/mass_properties.hpp"
 #include "snug/model/internal/orders_json.hpp"
 #include "snug/model/internal/parse.hpp"
 #include "snug/model/internal/scenario_reader.hpp"
@@ -270,7 +270,7 @@ void add_orders(Scenario& scenario, const std::vector<OrderLine>& lines, const s
                          "fewer: the scenario with all its boxes goes into each recording");
       }
       Parcel parcel{id, type, line.size, {}, material, line.handling};
-      parcel.inertia = {line.mass, Vector3::Zero(), internal::cuboid_inertia(line.size, line.mass)};
+      parcel.inertia = {line.mass, Vector3::Zero(), cuboid_inertia(line.size, line.mass)};
       scenario.parcels.push_back(parcel);
       items.push_back({});
       items.back().parcel = id;

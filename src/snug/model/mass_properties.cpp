@@ -1,5 +1,5 @@
 // Mass properties: cuboids, capsules, cylinders, hulls, and layered boxes (report eqs 12-14).
-#include "snug/model/internal/mass_properties.hpp"
+#include "snug/model/mass_properties.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -8,7 +8,6 @@
 #include "snug/model/parcel.hpp"
 
 namespace snug::model {
-namespace internal {
 namespace {
 
 /// m (d^2 I - d d^T).
@@ -109,8 +108,6 @@ SpatialInertia uniform_inertia(const std::vector<PlacedShape>& shapes, double ma
   return scaled_to_mass(sum_inertias(parts), mass);
 }
 
-}  // namespace internal
-
 SpatialInertia compute_layered_inertia(const Vector3& size, const std::optional<Shell>& shell,
                                        const std::vector<Layer>& layers) {
   std::vector<SpatialInertia> parts;
@@ -118,14 +115,13 @@ SpatialInertia compute_layered_inertia(const Vector3& size, const std::optional<
     const Vector3 inner = size - Vector3::Constant(2.0 * shell->thickness);
     const double density = shell->mass / (size.prod() - inner.prod());
     parts.push_back({shell->mass, Vector3::Zero(),
-                     internal::cuboid_inertia(size, density * size.prod()) -
-                         internal::cuboid_inertia(inner, density * inner.prod())});
+                     cuboid_inertia(size, density * size.prod()) - cuboid_inertia(inner, density * inner.prod())});
   }
   for (const Layer& layer : layers) {
     const double mass = layer.density * layer.size.prod();  // eq. 12
-    parts.push_back({mass, layer.centre, internal::cuboid_inertia(layer.size, mass)});
+    parts.push_back({mass, layer.centre, cuboid_inertia(layer.size, mass)});
   }
-  return internal::sum_inertias(parts);  // eq. 14
+  return sum_inertias(parts);  // eq. 14
 }
 
 }  // namespace snug::model

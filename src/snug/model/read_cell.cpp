@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "snug/model/internal/fields.hpp"
-#include "snug/model/internal/mass_properties.hpp"
+#include "snug/model/mass_properties.hpp"
 #include "snug/model/internal/scenario_reader.hpp"
 
 namespace snug::model::internal {

@@ -7,14 +7,12 @@
 
 #include "snug/core/rng.hpp"
 #include "snug/geometry/convex_hull.hpp"
-#include "snug/model/internal/mass_properties.hpp"
+#include "snug/model/mass_properties.hpp"
 #include "snug/model/parcel.hpp"
 
 namespace snug::model {
 namespace {
 
-using internal::cuboid_inertia;
-using internal::uniform_inertia;
 
 Pose random_pose(Rng& rng) {
   const auto vector = [&rng](double scale) {

@@ -5,7 +5,7 @@
 
 #include "snug/model/body.hpp"
 
-namespace snug::model::internal {
+namespace snug::model {
 
 /// Volume [m^3], and mass, centre and inertia of a shape of unit density, in its carrier's frame.
 [[nodiscard]] SpatialInertia unit_density_inertia(const PlacedShape& placed);
@@ -18,4 +18,4 @@ namespace snug::model::internal {
 /// Inertia of a cuboid about its centre.
 [[nodiscard]] Matrix3 cuboid_inertia(const Vector3& size, double mass);
 
-}  // namespace snug::model::internal
+}  // namespace snug::model
