@@ -146,10 +146,10 @@ class LogReader {
       if (columns[k] < 0) fail(prefix + words[k], "no such column", "all " + std::to_string(kCount) + " of them");
   }
 
-  /// NaN for an empty cell.
+  /// NaN for an empty cell, and where mc_rtc wrote so.
   double number(const std::vector<std::string_view>& cells, int column) const {
     const std::string_view cell = cells[static_cast<std::size_t>(column)];
-    if (cell.empty()) return kNaN;
+    if (cell.empty() || cell == "nan" || cell == "-nan") return kNaN;
     double value = 0.0;
     const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
     if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
@@ -183,7 +183,10 @@ class LogReader {
     if (wrench_[0] < 0) return;
     Vector6 v;
     for (std::size_t k = 0; k < 6; ++k) v[static_cast<int>(k)] = number(cells, wrench_[k]);
-    if (!v.allFinite()) fail("UR10FTSensor", "a wrench with empty cells", "six numbers in every row");
+    if (v.array().isNaN().all()) return;  // not logged then
+    if (!v.allFinite())
+      fail("UR10FTSensor", "a wrench with empty cells", "six numbers, or none where it was not logged");
+    wrench_times_.push_back(time);
     wrenches_.push_back({v.tail<3>(), v.head<3>()});
   }
 
@@ -200,7 +203,7 @@ class LogReader {
       for (Body& body : bodies_) log.bodies.push_back({body_name(body.prefix), std::move(body.poses)});
       std::sort(log.bodies.begin(), log.bodies.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
     }
-    if (!wrenches_.empty()) recording.force_torque = {times_, std::move(wrenches_), {}};
+    if (wrenches_.size() > 1) recording.force_torque = {std::move(wrench_times_), std::move(wrenches_), {}};
     if (!tool_poses_.empty()) recording.robot = {times_, {}, {}, std::move(tool_poses_)};
     return recording;
   }
@@ -219,7 +222,7 @@ class LogReader {
   std::vector<Body> bodies_;
   LogColumns<7> tool_;
   LogColumns<6> wrench_;
-  std::vector<double> times_;
+  std::vector<double> times_, wrench_times_;
   std::vector<PoseSample> tool_poses_;
   std::vector<Wrench> wrenches_;
 };

@@ -10,9 +10,9 @@ namespace snug::validation {
 
 /// Reads a table with the column names of mc_rtc logs (docs/formats.md): `t`, `BODY_FloatingBase_orientation_{w,x,y,z}`
 /// (world -> body), `BODY_FloatingBase_position_{x,y,z}`, and perhaps `UR10FTSensor_{cx,cy,cz,fx,fy,fz}` and
-/// `tool_...`; separated by ';' or ','; other columns are left out; empty cells are what was not measured. All sources
-/// share the clock `t`, and poses are in W. Throws InputError (file:line, column) for what cannot be read as such a
-/// table.
+/// `tool_...`; separated by ';' or ','; other columns are left out; empty cells, and `nan`, are what was not measured.
+/// All sources share the clock `t`, and poses are in W. Throws InputError (file:line, column) for what cannot be read
+/// as such a table.
 [[nodiscard]] record::ArchiveRecording load_log(const std::filesystem::path& path);
 
 /// Writes one table for each source of the recording, as they have clocks of their own: NAME-mocap.csv, NAME-ft.csv,
