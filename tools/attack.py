@@ -39,7 +39,7 @@ class Found(Exception):
 
 # ---- readers
 
-COSTLY = {"recording": 0.1, "measured": 0.3, "shapes": 0.3, "http": 0.001}  # fraction of the others' number
+COSTLY = {"recording": 0.1, "measured": 0.3, "imports": 0.5, "shapes": 0.3, "http": 0.001}  # fraction of the others' number
 
 
 def attack_readers(words):

@@ -234,6 +234,37 @@ CONTAINERS = """ 2
 """
 
 
+def lifted(time):
+    """How far a box is lifted that rises from 0.3 s to 0.7 s, of its whole way."""
+    share = min(1.0, max(0.0, (time - 0.3) / 0.4))
+    return 3 * share**2 - 2 * share**3
+
+
+def take():
+    """A robot's base and a crate as Motive exports them, y up; the crate is lost for 50 ms."""
+    row = lambda label, cells: f",{label}," + ",".join(cells) + "\n"
+    text = ("Format Version,1.23,Take Name,crate,Take Notes,,Capture Frame Rate,100.000000,Export Frame Rate,100.000000,Rotation Type,Quaternion,"
+            "Length Units,Meters,Coordinate Space,Global\n\n")
+    text += row("Type", ["Rigid Body"] * 14) + row("Name", ["Robot base"] * 7 + ["Crate"] * 7) + row("ID", ["1"] * 7 + ["2"] * 7)
+    text += row("", (["Rotation"] * 4 + ["Position"] * 3) * 2) + "Frame,Time (Seconds)" + ",X,Y,Z,W,X,Y,Z" * 2 + "\n"
+    for i in range(100):
+        crate = ",,,,,," if 55 <= i < 60 else f"0,0,0,1,0.6,{0.15 + 0.2 * lifted(i / 100):.6f},-0.1"
+        text += f"{i},{i / 100:.6f},0,0,0,1,0,0,0,{crate}\n"
+    return text
+
+
+def rtde():
+    """What record.py of the maker's client writes of such a lift."""
+    names = ["timestamp", *(f"actual_q_{i}" for i in range(6)), *(f"actual_TCP_pose_{i}" for i in range(6)), "actual_digital_output_bits"]
+    text = " ".join(names) + "\n"
+    for i in range(125):
+        up = lifted(i * 0.008)
+        joints = [-3.14, -1.57 - 0.2 * up, -1.57 + 0.2 * up, -1.57, 1.57, 0]
+        text += " ".join([f"{812.4 + i * 0.008:.3f}", *(f"{q:.5f}" for q in joints), "0.6", "0.1", f"{0.3 + 0.2 * up:.6f}", "0", "3.14159", "0",
+                          "1" if i * 0.008 > 0.2 else "0"]) + "\n"
+    return text
+
+
 def main(arguments):
     folder = Path(arguments[1]) if len(arguments) > 1 else ROOT / "scenarios" / "examples"
     rng = random.Random(7)
@@ -253,6 +284,8 @@ def main(arguments):
     (folder / "containers.txt").write_text(CONTAINERS)
     (folder / "board.csv").write_text(board(random.Random(8)))
     (folder / "releases.csv").write_text(releases(random.Random(9)))
+    (folder / "take.csv").write_text(take())
+    (folder / "rtde.csv").write_text(rtde())
     (folder / "lift.csv").write_text(lift(random.Random(10), 1.1, [0.01, -0.015, 0.125], [0.003, 0.004, 0.005]))
     return 0
 

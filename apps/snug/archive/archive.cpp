@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/ranges.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
+#include "snug/archive_import/measurements.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/record/archive.hpp"
 #include "snug/validation/log_table.hpp"
@@ -24,10 +26,13 @@ struct ArchiveListOptions {
   bool json = false;
 };
 struct ArchiveConvertOptions {
-  std::string input;
-  std::string output;  ///< a folder for an archive's tables, a .h5 for a log
-  std::string name;    ///< of the recording a log becomes; the log's own unless given
+  std::vector<std::string> inputs;
+  std::string output;  ///< a folder for an archive's tables, a .h5 for measurements
+  std::string name;    ///< of the recording that measurements become; the first file's unless given
   std::string note, sequence;
+  std::string up = "y";
+  std::vector<std::string> renames;  ///< OLD=NEW
+  archive_import::Hints hints;
 };
 struct ArchiveMergeOptions {
   std::vector<std::string> archives;
@@ -120,24 +125,38 @@ int run_archive_check(const ArchiveListOptions& options) {
   return findings.empty() ? kSuccess : kBadInput;
 }
 
-int run_archive_convert(const ArchiveConvertOptions& options) {
-  const bool is_log = std::filesystem::path(options.input).extension() == ".csv";
-  if (!is_log && !(options.name + options.note + options.sequence).empty())
-    throw InputError("command line", "--name, --note, --sequence", "an archive",
-                     "a log: recordings keep what they have");
-  if (is_log) {
-    OutputFile output = reserve({{"the log", options.input}}, options.output);
-    ArchiveRecording recording = validation::load_log(options.input);
-    // Links of the robot (robot/...) have no markers: its joints tell where they are.
-    std::erase_if(recording.motion_capture.bodies,
-                  [](const record::BodyTrack& body) { return body.name.find('/') != std::string::npos; });
-    if (!options.name.empty()) recording.name = options.name;
-    if (!options.note.empty()) recording.remarks = {{"note", options.note}};
-    if (!options.sequence.empty()) recording.remarks.emplace_back("sequence", options.sequence);
-    record::save_archive(std::move(output), {{recording}});
-    return kSuccess;
+archive_import::Hints import_hints(const ArchiveConvertOptions& options) {
+  archive_import::Hints hints = options.hints;
+  hints.up = options.up == "z" ? archive_import::UpAxis::Z : archive_import::UpAxis::Y;
+  for (const std::string& rename : options.renames) {
+    const std::size_t at = rename.rfind('=');
+    if (at == std::string::npos || at == 0 || at + 1 == rename.size())
+      throw InputError("command line", "--rename", "'" + rename + "'", "OLD=NEW, such as 'Rigid Body 1=Box013'");
+    hints.names[rename.substr(0, at)] = rename.substr(at + 1);
   }
-  const record::ArchiveReader reader(options.input);
+  return hints;
+}
+
+int import_measurements(const ArchiveConvertOptions& options) {
+  OutputFile output = reserve(name_all("the measurements", options.inputs), options.output);
+  archive_import::Imported imported =
+      archive_import::load_all({options.inputs.begin(), options.inputs.end()}, import_hints(options));
+  ArchiveRecording& recording = imported.recording;
+  if (!options.name.empty()) recording.name = options.name;
+  if (!options.note.empty()) recording.remarks = {{"note", options.note}};
+  if (!options.sequence.empty()) recording.remarks.emplace_back("sequence", options.sequence);
+  record::save_archive(std::move(output), {{recording}});
+  for (const std::string& remark : imported.remarks) std::fprintf(stderr, "snug: note: %s\n", remark.c_str());
+  return kSuccess;
+}
+
+int run_archive_convert(const ArchiveConvertOptions& options) {
+  const bool is_import = options.inputs.size() > 1 || archive_import::is_import(options.inputs.front());
+  if (is_import) return import_measurements(options);
+  if (!(options.name + options.note + options.sequence).empty())
+    throw InputError("command line", "--name, --note, --sequence", "an archive",
+                     "measurements: recordings keep what they have");
+  const record::ArchiveReader reader(options.inputs.front());
   make_folder("-o", options.output);
   for (std::size_t i = 0; i < reader.size(); ++i) {
     for (const std::filesystem::path& path : validation::save_tables(reader.read(i), options.output))
@@ -181,20 +200,42 @@ void add_reading(const Verb& verb, const char* name, const char* description, co
   add_json(part, options.json);
 }
 
-void add_convert(const Verb& verb) {
+constexpr const char* kArchiveConvertHelp =
+    R"(Each source of an archive becomes a table of its own, as each has a clock of its own. Into an archive: CSV of OptiTrack's Motive, of RTDE
+(record.py, ur_rtde) and with the column names of mc_rtc, its flat binary logs (.flat), MCAP and bags of ROS (.mcap, .db3, .bag, a folder).
+Several files become one recording: each brings what no other has. Bags need readers of PyPI in a Python that SNUG_PYTHON names; what
+is missing, the message says. Of a bag with a robot: --tool tool0 --wrench /force_torque_sensor_broadcaster/wrench. What was left out or
+assumed is said on stderr (docs/formats.md#measurements-of-other-programs).
+Examples:
+  snug archive convert measured.h5 -o tables
+  snug export run.h5 --format csv -o log.csv
+  snug archive convert log.csv --name Rec_20230511T093000Z --sequence 1 -o one.h5
+  snug archive convert scenarios/examples/take.csv scenarios/examples/rtde.csv --rename Crate=Box013 --rename "Robot base=Base005" -o lift.h5)";
+
+void add_archive_convert(const Verb& verb) {
   const Verb part =
-      verb.part("convert", "an archive into tables, or a log into an archive",
-                "Each source of an archive becomes a table of its own, as each has a clock of its own.\nExamples:\n  "
-                "snug archive convert measured.h5 -o tables\n  snug export run.h5 --format csv -o log.csv\n  snug "
-                "archive convert log.csv --name Rec_20230511T093000Z --sequence 1 -o one.h5");
+      verb.part("convert", "an archive into tables, or measurements into an archive", kArchiveConvertHelp);
   ArchiveConvertOptions& options = part.runs(run_archive_convert);
-  part.option("input", options.input, "ARCHIVE.h5|LOG.csv", "an archive, or a log with the column names of mc_rtc")
-      .required();
+  part.option("input", options.inputs, "FILE", "an archive, or measurements: .csv, .flat, .mcap, .db3, .bag, a folder")
+      .required()
+      .expected(1, 8);
   part.option("-o,--output", options.output, "FOLDER|FILE.h5", "folder for the tables (made if needed), or the archive")
       .required();
-  part.option("--name", options.name, "NAME", "of the recording that a log becomes; else the log's file name");
-  part.option("--note", options.note, "TEXT", "what to remark about the recording that a log becomes");
-  part.option("--sequence", options.sequence, "NAME", "item sequence of the recording that a log becomes");
+  part.option("--name", options.name, "NAME", "of the recording that measurements become; else the file's name");
+  part.option("--note", options.note, "TEXT", "what to remark about that recording");
+  part.option("--sequence", options.sequence, "NAME", "item sequence of that recording");
+  part.option("--rename", options.renames, "OLD=NEW",
+              "a body as the file calls it, and as the archive does: Box013, Base005")
+      .one_each();
+  part.option("--up", options.up, "AXIS", "of motion capture by Motive: y, its usual axes, turned to z up; or z",
+              one_of({"y", "z"}));
+  part.option("--tool", options.hints.tool, "TOPIC|FRAME", "of a bag: the poses that are the tool's");
+  part.option("--wrench", options.hints.wrench, "NAME",
+              "the force sensor: topic of a bag, sensor of a flat log, columns of RTDE (ft_raw_wrench)");
+  part.flag("--turn-wrench", options.hints.turns_wrench, "forces are of the robot on the load: all signs turn");
+  part.option("--joint", options.hints.joints, "NAME", "of a bag: joints from base to tool, one each").one_each();
+  part.option("--fixed-frame", options.hints.fixed_frame, "NAME",
+              "of a bag: the frame of /tf that poses are wanted in");
 }
 
 void add_merge(const Verb& verb) {
@@ -217,7 +258,7 @@ void add_archive(CLI::App& app, Action& action) {
               "Example:\n  snug archive list measured.h5 --json", run_archive_list);
   add_reading(verb, "check", "read everything; tell each defect with its path and index; exit code 2 if there is one",
               "Example:\n  snug archive check measured.h5", run_archive_check);
-  add_convert(verb);
+  add_archive_convert(verb);
   add_merge(verb);
 }
 

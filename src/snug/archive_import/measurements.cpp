@@ -1,0 +1,119 @@
+// load: tells what kind of file it is, and joins several to one recording.
+#include "snug/archive_import/measurements.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "snug/archive_import/internal/readers.hpp"
+#include "snug/core/csv_fields.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/core/read_file.hpp"
+#include "snug/core/text.hpp"
+#include "snug/validation/log_table.hpp"
+
+namespace snug::archive_import {
+namespace {
+
+namespace fs = std::filesystem;
+using record::ArchiveRecording;
+
+constexpr const char* kExpected =
+    "CSV of Motive, RTDE or mc_rtc, a flat log of mc_rtc (.flat), MCAP or a bag of ROS (.mcap, .db3, .bag, a folder)";
+
+std::string ending_of(const fs::path& path) {
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return ending;
+}
+
+bool is_folder(const fs::path& path) {
+  std::error_code error;
+  return fs::is_directory(path, error);
+}
+
+bool is_bag(const fs::path& path) {
+  const std::string ending = ending_of(path);
+  return ending == ".mcap" || ending == ".db3" || ending == ".bag" || is_folder(path);
+}
+
+/// Motive and others write UTF-16 on request; the two bytes before it say so.
+void refuse_utf16(std::string_view text, const std::string& name) {
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
+    throw InputError(name, "", "text in UTF-16", "UTF-8: save the table as 'CSV UTF-8'");
+}
+
+Imported load_table(const fs::path& path, const Hints& hints) {
+  const std::string name = path.string();
+  if (ending_of(path) == ".flat")
+    return internal::read_flat_log(read_file(path, kExpected, internal::kLargestTable), name, hints);
+  const std::string text = read_file(path, kExpected, internal::kLargestTable);
+  if (text.starts_with("ANN"))  // "ANNE" and versions behind it
+    throw InputError(name, "", "a binary log of mc_rtc",
+                     "what its own program makes of it: mc_bin_to_flat " + path.filename().string() + " log.flat");
+  refuse_utf16(text, name);
+  check_utf8(text, name);
+  const std::string_view table = without_byte_order_mark(text);
+  if (internal::is_motive(table)) return internal::read_motive(table, name, hints);
+  if (internal::is_rtde(table)) return internal::read_rtde(table, name, hints);
+  Imported imported{validation::load_log(path), {}};
+  ArchiveRecording& recording = imported.recording;
+  recording.remarks.clear();
+  // Links of the robot (robot/...) have no markers: its joints tell where they are.
+  std::erase_if(recording.motion_capture.bodies,
+                [](const record::BodyTrack& body) { return body.name.find('/') != std::string::npos; });
+  for (record::BodyTrack& body : recording.motion_capture.bodies) body.name = internal::body_name(body.name, hints);
+  if (recording.motion_capture.bodies.empty()) recording.motion_capture = {};
+  internal::order_bodies(recording.motion_capture, name);
+  internal::turn_wrenches(recording, hints);
+  return imported;
+}
+
+void join(const Imported& from, const fs::path& path, std::array<fs::path, 3>& brought_by, Imported& into) {
+  ArchiveRecording& to = into.recording;
+  const auto take = [&](const char* source, const auto& part, auto& place, fs::path& by) {
+    if (part.times.empty()) return;
+    if (!place.times.empty())
+      throw InputError(path.string(), source, "what " + by.filename().string() + " brings, too",
+                       "each source in one of the files");
+    place = part;
+    by = path;
+  };
+  take("motion capture", from.recording.motion_capture, to.motion_capture, brought_by[0]);
+  take("force/torque", from.recording.force_torque, to.force_torque, brought_by[1]);
+  take("robot", from.recording.robot, to.robot, brought_by[2]);
+  for (const std::string& remark : from.remarks) into.remarks.push_back(path.filename().string() + ": " + remark);
+}
+
+}  // namespace
+
+bool is_import(const fs::path& path) {
+  static constexpr std::array<std::string_view, 7> kEndings = {".csv", ".txt", ".tsv", ".flat",
+                                                               ".bin", ".log", ".data"};
+  return is_bag(path) || std::find(kEndings.begin(), kEndings.end(), ending_of(path)) != kEndings.end();
+}
+
+Imported load(const fs::path& path, const Hints& hints) { return load_all({path}, hints); }
+
+Imported load_all(const std::vector<fs::path>& paths, const Hints& hints) {
+  Imported all;
+  std::array<fs::path, 3> brought_by;
+  std::string note, begins;
+  for (const fs::path& given : paths) {
+    const fs::path path = given.has_filename() ? given : given.parent_path();  // "bag/" is "bag"
+    Imported one = is_bag(path) ? internal::load_bag(path, hints) : load_table(path, hints);
+    const std::string name = path.filename().string();
+    note += (note.empty() ? "read from " : ", ") + name;
+    if (all.recording.name.empty()) all.recording.name = is_folder(path) ? name : path.stem().string();
+    if (const std::string off = internal::begin_at_zero(one.recording); !off.empty())
+      begins += (begins.empty() ? "" : ", ") + name + " at " + off;
+    join(one, path, brought_by, all);
+  }
+  all.recording.remarks = {{"note", note}};
+  if (!begins.empty()) all.recording.remarks.emplace_back("begins", begins);
+  return all;
+}
+
+}  // namespace snug::archive_import
