@@ -33,6 +33,7 @@ void add_verbs(CLI::App& app, Action& action) {
   add_calibrate(app, action);
   add_measure(app, action);
   add_archive(app, action);
+  add_convert(app, action);
   add_validate(app, action);
   add_identify(app, action);
   add_bench(app, action);

@@ -38,6 +38,7 @@ void add_perceive(CLI::App& app, Action& action);
 void add_calibrate(CLI::App& app, Action& action);
 void add_measure(CLI::App& app, Action& action);
 void add_archive(CLI::App& app, Action& action);
+void add_convert(CLI::App& app, Action& action);
 void add_validate(CLI::App& app, Action& action);
 void add_identify(CLI::App& app, Action& action);
 void add_bench(CLI::App& app, Action& action);
