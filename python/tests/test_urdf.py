@@ -86,7 +86,8 @@ def test_public_files_load_or_are_refused_naming_the_place():
             kind, word = judge(path, reference)
             counts[kind] += 1
             print(kind, path.relative_to(FOLDER), word, sep="\t")
-            if kind == "wrong" or (kind == "refused" and not re.match(re.escape(str(path)) + r":\d+: ", word)):
+            place = re.match(r"(?:\.\.\.)?(.*):\d+: ", word)  # a long path is cut at its beginning
+            if kind == "wrong" or (kind == "refused" and not (place and str(path).endswith(place[1]))):
                 wrong.append((path, word))
         reference.stdin.close()
     print(dict(counts), file=sys.stderr)

@@ -11,7 +11,10 @@ import pinocchio
 
 
 def poses(path, tool, joints, q):
-    model = pinocchio.buildModelFromUrdf(path, mimic=True)
+    try:
+        model = pinocchio.buildModelFromUrdf(path, mimic=True)
+    except ValueError:  # it knows no chains of joints that mimic, nor leaders off the path: then they all move by themselves
+        model = pinocchio.buildModelFromUrdf(path)
     data, frame = model.createData(), model.getFrameId(tool, pinocchio.FrameType.BODY)
     found = []
     for values in q:
