@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "apps/snug/command_line/outputs.hpp"
-#include "apps/snug/command_line/ranges.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
 #include "snug/archive_import/measurements.hpp"
 #include "snug/core/input_error.hpp"
