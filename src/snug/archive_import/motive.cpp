@@ -94,7 +94,10 @@ class MotiveReader {
         lines.push_back(std::move(fields));
         break;
       }
-      if (fields.size() > 2) lines.push_back(std::move(fields));
+      // A spreadsheet that saved the table has filled the empty line with commas.
+      const bool is_empty =
+          std::all_of(fields.begin(), fields.end(), [](const std::string& one) { return one.empty(); });
+      if (fields.size() > 2 && !is_empty) lines.push_back(std::move(fields));
     }
     if (lines.size() < 4) fail("", "no lines of types, names and kinds above the columns", "an export by Motive");
     for (std::vector<std::string>& line : lines) line.resize(width_);

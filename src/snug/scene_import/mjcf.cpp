@@ -16,6 +16,8 @@ namespace snug::scene_import::internal {
 namespace {
 
 constexpr int kDeepestBody = 200;
+const std::set<std::string> kBodyAttributes = {"name",   "childclass", "mocap", "pos",      "quat", "axisangle",
+                                               "xyaxes", "zaxis",      "euler", "gravcomp", "user", "sleep"};
 /// Elements that say how things look, and memory: of no weight here, and in every scene.
 const std::set<std::string> kLooks = {"visual", "statistic", "size", "custom"};
 
@@ -285,6 +287,8 @@ class MjcfReader {
     } else {
       inner.X_OB = place.X_OB * X_BP;
     }
+    for (const auto& [key, value] : own_attributes(node))
+      if (!kBodyAttributes.contains(key)) remark(node, "body, " + printable(key, 40) + ": left out");
     if (node.has("gravcomp") && node.number(node.attribute("gravcomp"), "gravcomp") != 0.0)
       remark(node, "body, gravcomp: left out");
     BodyParts parts;

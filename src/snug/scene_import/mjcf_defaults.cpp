@@ -140,11 +140,13 @@ void MjcfMeshes::read(const Node& node, const MjcfCompiler& compiler, const Mjcf
   if (!assets_.emplace(name, asset).second) node.fail("a second mesh '" + name + "'", "each name once");
 }
 
-const Solid& MjcfMeshes::find(const std::string& name, const Node& geom) {
+const Solid* MjcfMeshes::find(const std::string& name, const Node& geom) {
   const auto found = assets_.find(name);
   if (found == assets_.end()) geom.fail("mesh '" + name + "'", nearest_of(name, assets_));
+  const bool is_built_in = found->second.path.empty() && find_attribute(found->second.attributes, "vertex") == nullptr;
+  if (is_built_in) return nullptr;
   if (!found->second.solid) found->second.solid = load(found->second);
-  return *found->second.solid;
+  return &*found->second.solid;
 }
 
 Solid MjcfMeshes::load(const Asset& asset) {
@@ -153,9 +155,7 @@ Solid MjcfMeshes::load(const Asset& asset) {
   if (!asset.path.empty()) {
     parts = read_mesh_file(asset.path, node);
   } else {
-    const std::string* points = find_attribute(asset.attributes, "vertex");
-    if (points == nullptr) node.fail("neither file nor vertex", "one of them: built-in shapes are not made");
-    const std::vector<double> v = node.numbers(*points, "vertex", 12, 300'000);
+    const std::vector<double> v = node.numbers(*find_attribute(asset.attributes, "vertex"), "vertex", 12, 300'000);
     if (v.size() % 3 != 0) node.fail(std::to_string(v.size()) + " numbers of vertex", "three for each point");
     parts.emplace_back();
     for (std::size_t i = 0; i < v.size(); i += 3) parts[0].points.emplace_back(v[i], v[i + 1], v[i + 2]);

@@ -1,6 +1,7 @@
 // read_geom: shape, mass and surface of a geom of MJCF.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "snug/core/text.hpp"
 #include "snug/scene_import/internal/mjcf.hpp"
@@ -9,6 +10,12 @@ namespace snug::scene_import::internal {
 namespace {
 
 constexpr double kWater = 1000.0;  // kg/m^3, MuJoCo's default
+/// What is read, said by a remark of its own, or only how it looks.
+const std::set<std::string> kGeomAttributes = {
+    "name",     "class", "type",     "contype",    "conaffinity", "condim",       "group",  "priority", "size",
+    "material", "rgba",  "friction", "mass",       "density",     "shellinertia", "solmix", "solref",   "solimp",
+    "margin",   "gap",   "fromto",   "pos",        "quat",        "axisangle",    "xyaxes", "zaxis",    "euler",
+    "hfield",   "mesh",  "fitscale", "fluidshape", "fluidcoef",   "user"};
 
 class GeomReader {
  public:
@@ -26,6 +33,8 @@ class GeomReader {
     if (geom.touches && ((type & 1) == 0 || (affinity & 1) == 0))
       remark("contype, conaffinity: touches everything here");
     const int group = whole("group", 0);
+    for (const auto& [key, value] : attributes_)
+      if (!kGeomAttributes.contains(key)) remark(printable(key, 40) + ": left out");
     geom.counts = group >= compiler_.first_group && group <= compiler_.last_group;
     return geom;
   }
@@ -43,7 +52,12 @@ class GeomReader {
     geom.X_BG = read_pose(node_, attributes_, compiler_);
     if (find("mesh") != nullptr && type != "sdf") {
       if (type != "mesh") remark("type " + printable(type, 20) + " fitted to a mesh: taken as the mesh itself");
-      geom.solid = meshes_.find(*find("mesh"), node_);
+      const Solid* solid = meshes_.find(*find("mesh"), node_);
+      if (solid == nullptr) {
+        remark("of a built-in mesh: left out");
+        return false;
+      }
+      geom.solid = *solid;
       return true;
     }
     if (type == "hfield" || type == "sdf" || type == "mesh") {

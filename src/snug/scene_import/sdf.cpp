@@ -43,6 +43,8 @@ struct Scope {
   [[nodiscard]] std::string key(const std::string& name) const {
     if (name == "__model__") return model_frame;
     if (name == "world") return "";
+    constexpr std::string_view kItself = "::__model__";
+    if (name.ends_with(kItself)) return key(name.substr(0, name.size() - kItself.size()));
     return prefix.empty() ? name : prefix + "::" + name;
   }
 };
@@ -155,6 +157,7 @@ class SdfReader {
     const std::string uri = node.child_text("uri");
     const auto path = find_uri(uri, node.file().folder);
     if (!path) {
+      lacks_models_ = true;
       const bool is_remote = uri.find("://") != std::string::npos && !uri.starts_with("model://") &&
                              !uri.starts_with("package://") && !uri.starts_with("file://");
       remark(node, "include '" + uri +
@@ -172,6 +175,7 @@ class SdfReader {
     const std::optional<Node> model =
         root.tag() == "sdf" || root.tag() == "gazebo" ? root.child("model") : std::nullopt;
     if (!model) {
+      lacks_models_ = true;
       remark(node, "include '" + uri + "', a file without a model in SDF: left out");
       return;
     }
@@ -223,8 +227,9 @@ class SdfReader {
       if (one.tag() == "sensor" || one.tag() == "plugin") leave_out(one);
   }
 
-  /// The link that a name stands for, by its place; the number of links for the world.
-  [[nodiscard]] std::size_t link_of(std::string key, const Node& node) const {
+  /// The link that a name stands for, by its place; the number of links for the world; nothing for one that may be of
+  /// a model that was left out.
+  [[nodiscard]] std::optional<std::size_t> link_of(std::string key, const Node& node) const {
     for (std::size_t steps = 0; steps <= attached_.size(); ++steps) {
       if (key.empty()) return links_.size();
       const auto found =
@@ -234,6 +239,7 @@ class SdfReader {
       if (next == attached_.end()) break;
       key = next->second;
     }
+    if (lacks_models_) return std::nullopt;
     std::vector<std::string> names;
     for (const SdfLink& link : links_) names.push_back(link.key);
     const std::string_view nearest = find_nearest(key, names);
@@ -258,7 +264,13 @@ class SdfReader {
     };
     for (std::size_t i = 0; i < links_.size(); ++i)
       if (links_[i].scope.is_static) join(world, i);
-    for (const SdfJoint& joint : joints_) join(link_of(joint.parent, joint.node), link_of(joint.child, joint.node));
+    for (const SdfJoint& joint : joints_) {
+      const auto parent = link_of(joint.parent, joint.node), child = link_of(joint.child, joint.node);
+      if (parent && child)
+        join(*parent, *child);
+      else
+        remark(joint.node, "joint to a link of a model that was left out: left out");
+    }
     std::map<std::size_t, std::size_t> bodies;  // of leaders
     for (std::size_t i = 0; i < links_.size(); ++i) {
       const SdfLink& link = links_[i];
@@ -329,6 +341,7 @@ class SdfReader {
   std::map<std::string, std::string> attached_;
   std::map<std::string, const XmlFile*> included_;
   std::size_t things_ = 0;
+  bool lacks_models_ = false;  ///< some were left out
 };
 
 }  // namespace

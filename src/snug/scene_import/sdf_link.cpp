@@ -8,14 +8,16 @@
 namespace snug::scene_import::internal {
 namespace {
 
+/// 1 m where a shape does not say it, as SDF has it (half for the radius of a capsule).
 double length_of(const Node& node, const char* tag) {
-  const double value = node.number(node.child_text(tag), tag);
+  const bool is_slim = node.tag() == "capsule" && std::string_view(tag) == "radius";
+  const double value = node.number(node.child_text(tag, is_slim ? "0.5" : "1"), tag);
   if (!(value > 0.0 && value <= kLargestSize)) node.fail(std::string(tag) + " " + node.child_text(tag), "metres, > 0");
   return value;
 }
 
 Vector3 size_of(const Node& node, const char* tag) {
-  const Vector3 size = node.vector(node.child_text(tag), tag);
+  const Vector3 size = node.vector(node.child_text(tag, "1 1 1"), tag);
   if (!(size.minCoeff() > 0.0 && size.maxCoeff() <= kLargestSize))
     node.fail(std::string(tag) + " " + node.child_text(tag), "metres, > 0");
   return size;

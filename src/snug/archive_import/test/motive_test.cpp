@@ -55,6 +55,13 @@ TEST(Motive, LostBodiesHaveEmptyCellsOrRowsThatEnd) {
   EXPECT_TRUE(record::is_tracked(poses[3]));
 }
 
+TEST(Motive, TablesThatASpreadsheetSavedHaveCommasInEmptyLines) {
+  std::string text =
+      header("Quaternion", "Meters", kQuaternionColumns) + "0,0,0,0,0,1,1,2,3,,\n1,0.008,0,0,0,0.999945,1,2,3,,\n";
+  text.replace(text.find("Global\r\n\r\n"), 10, "Global,,,,\r\n,,,,,,,,,,\r\n");
+  EXPECT_EQ(read_motive(text, "take.csv", {}).recording.motion_capture.bodies.at(0).poses.size(), 2U);
+}
+
 TEST(Motive, AnglesTurnInTheirOrderAboutTheTurnedAxes) {
   const std::string columns =
       ",,,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body\n"  // as older versions, with a time code

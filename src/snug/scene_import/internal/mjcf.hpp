@@ -51,8 +51,8 @@ class MjcfDefaults {
 class MjcfMeshes {
  public:
   void read(const Node& node, const MjcfCompiler& compiler, const MjcfDefaults& defaults, RemarkList& remarks);
-  /// Fails at `geom` for a name that is none.
-  [[nodiscard]] const Solid& find(const std::string& name, const Node& geom);
+  /// Null for a mesh that is built in, which no reader makes here. Fails at `geom` for a name that is none.
+  [[nodiscard]] const Solid* find(const std::string& name, const Node& geom);
 
  private:
   struct Asset {

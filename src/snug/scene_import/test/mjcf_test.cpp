@@ -154,6 +154,15 @@ TEST(Mjcf, JointsAreHeldAndSaid) {
   EXPECT_TRUE(has_remark(imported, "touch: left out"));
 }
 
+TEST(Mjcf, AttributesAndMeshesThatAreNotReadAreSaid) {
+  Imported imported;
+  (void)load(R"(<mujoco><asset><mesh name="s" builtin="sphere" params="1"/></asset><worldbody>
+    <geom size="0.1" surfacevel="1 0 0"/><geom type="mesh" mesh="s"/></worldbody></mujoco>)",
+             &imported);
+  EXPECT_TRUE(has_remark(imported, "scene.xml:2: geom, surfacevel: left out"));
+  EXPECT_TRUE(has_remark(imported, "scene.xml:2: geom, of a built-in mesh: left out"));
+}
+
 TEST(Mjcf, StaticsThatOverlapAreOneBodyAndLooksDoNotTouch) {
   Imported imported;
   const model::Scenario s = load(R"(<mujoco><worldbody><geom type="plane" size="1 1 1"/>

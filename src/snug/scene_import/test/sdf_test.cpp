@@ -106,6 +106,27 @@ TEST(Sdf, JointsToTheWorldAndMovingOnesHold) {
   EXPECT_TRUE(has_remark(imported, "scene.xml:2: joint (revolute): held where it is"));
 }
 
+TEST(Sdf, ShapesWithoutSizesAndNamesOfModelsThemselves) {
+  const model::Scenario s =
+      load(world("<model name=\"m\">" + link("a", "", "<sphere/>") + "<model name=\"n\"><pose>3 0 0 0 0 0</pose>" +
+                 link("b", "", "<box/>") +
+                 "</model>"
+                 "<joint name=\"j\" type=\"fixed\"><parent>a</parent><child>n::__model__</child></joint></model>"));
+  const model::Body& a = body(s, "m");
+  ASSERT_EQ(a.shapes.size(), 2U);
+  EXPECT_EQ(std::get<geometry::Capsule>(a.shapes[0].shape).radius, 1.0);
+  EXPECT_EQ(std::get<geometry::Box>(a.shapes[1].shape).half, Vector3(0.5, 0.5, 0.5));
+}
+
+TEST(Sdf, JointsToModelsThatAreLeftOutAreSaid) {
+  Imported imported;
+  (void)load(world("<model name=\"m\">" + link("a", "") +
+                   "<include><uri>https://fuel.example/w</uri><name>w</name></include>"
+                   "<joint name=\"j\" type=\"fixed\"><parent>a</parent><child>w::link</child></joint></model>"),
+             &imported);
+  EXPECT_TRUE(has_remark(imported, "of a model that was left out"));
+}
+
 TEST(Sdf, IncludesAreFoundAboveTheSceneOrSaid) {
   const snug::test::ScratchFolder folder;
   std::filesystem::create_directories(folder / "models/crate");
