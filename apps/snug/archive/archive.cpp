@@ -12,6 +12,7 @@
 
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
+#include "apps/snug/command_line/verb.hpp"
 #include "snug/archive_import/measurements.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/record/archive.hpp"
