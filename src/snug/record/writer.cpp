@@ -13,6 +13,7 @@
 #include "snug/core/units.hpp"
 #include "snug/record/internal/commit_driver.hpp"
 #include "snug/record/internal/contact_log.hpp"
+#include "snug/record/internal/dimension_scales.hpp"
 #include "snug/record/internal/header_file.hpp"
 #include "snug/record/internal/layout.hpp"
 
@@ -215,6 +216,7 @@ RecordingWriter::Impl::Impl(OutputFile output_file, const RecordingHeader& heade
     for (std::size_t i = 0; i < kFrameColumnCount; ++i)
       columns.emplace_back(output.file.get(), frame_column(static_cast<FrameColumn>(i)), chunk_rows);
     present.resize(body_count);
+    write_dimension_scales(output.file.get(), body_count > 0, joint_count > 0);
     check(H5Fflush(output.file.get(), H5F_SCOPE_LOCAL), "flush");
   });
 }

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "snug/core/check.hpp"
+#include "snug/record/internal/dimension_scales.hpp"
 
 namespace snug::record::internal {
 namespace {
@@ -30,7 +31,7 @@ Handle create(hid_t file, const ColumnSpec& spec, const Dims& dims, const Dims& 
   check(H5Pset_create_intermediate_group(links.get(), 1), spec.path);
   Handle dataset(H5Dcreate2(file, spec.path, spec.type, space.get(), links.get(), properties.get(), H5P_DEFAULT),
                  spec.path);
-  if (*spec.unit != '\0') write_attribute(dataset.get(), "unit", spec.unit);
+  write_units(dataset.get(), spec.unit);
   if (*spec.frame != '\0') write_attribute(dataset.get(), "frame", spec.frame);
   if (*spec.columns != '\0') write_attribute(dataset.get(), "columns", spec.columns);
   return dataset;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "snug/core/text.hpp"
+#include "snug/record/internal/dimension_scales.hpp"
 #include "snug/record/internal/layout.hpp"
 
 namespace snug::record::internal {
@@ -39,7 +40,7 @@ void write_table(hid_t file, const char* path, std::size_t width, const std::vec
   Dims dims = {values.size() / width};
   if (width > 1) dims.push_back(width);
   const Handle dataset = write_dataset(file, path, file_type<T>(), dims, values.data());
-  if (*unit != '\0') write_attribute(dataset.get(), "unit", unit);
+  write_units(dataset.get(), unit);
   if (*columns != '\0') write_attribute(dataset.get(), "columns", columns);
 }
 

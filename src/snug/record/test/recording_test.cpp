@@ -1,6 +1,8 @@
 // Recordings: what is written is read, bit by bit, and files that are not right are refused with a reason.
 #include <gtest/gtest.h>
 #include <hdf5.h>
+#include <hdf5_hl.h>
+#include <malloc.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -111,6 +113,60 @@ TEST(Recording, RoundsContactsToTheStatedQuanta) {
     EXPECT_LE((a.force_B_W - b.force_B_W).cwiseAbs().maxCoeff(), 0.5 * kForceQuantum);
     EXPECT_LE(std::abs(a.phi - b.phi), 0.5 * kGapQuantum);
   }
+}
+
+TEST(Recording, NamesItsAxesAndItsUnitsForReadersOfNetcdf) {
+  const ScratchFolder folder;
+  Rng rng = Rng(14).split("scales");
+  const Recording written = test::random_recording(rng, 3, 40, 2);
+  save_recording(folder / "run.h5", written);
+  const hid_t file = H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  ASSERT_GE(file, 0);
+  struct Axis {
+    const char* path;
+    std::vector<const char*> scales;
+  };
+  const Axis axes[] = {{"/cup/bend", {"/time"}},
+                       {"/events/kind", {"/events/time"}},
+                       {"/tool/twist", {"/time", "/twist_part"}},
+                       {"/flange/wrench", {"/time", "/wrench_part"}},
+                       {"/bodies/pose", {"/time", "/bodies/name", "/pose_part"}},
+                       {"/bodies/com", {"/bodies/name", "/xyz"}}};
+  for (const auto& [path, scales] : axes) {
+    const hid_t dataset = H5Dopen2(file, path, H5P_DEFAULT);
+    for (unsigned axis = 0; axis < scales.size(); ++axis) {
+      const hid_t scale = H5Dopen2(file, scales[axis], H5P_DEFAULT);
+      EXPECT_GT(H5DSis_scale(scale), 0) << scales[axis];
+      EXPECT_GT(H5DSis_attached(dataset, scale, axis), 0) << path << " " << axis;
+      char name[32] = "";
+      EXPECT_GT(H5DSget_scale_name(scale, name, sizeof name), 0);
+      EXPECT_EQ(name, std::filesystem::path(scales[axis]).filename().string());
+      H5Dclose(scale);
+    }
+    H5Dclose(dataset);
+  }
+  const auto has_units = [&](const char* path) { return H5Aexists_by_name(file, path, "units", H5P_DEFAULT) > 0; };
+  EXPECT_TRUE(has_units("/time") && has_units("/bodies/mass") && has_units("/tool/pose"));
+  EXPECT_FALSE(has_units("/bodies/kind") || has_units("/contacts/frame_first") || has_units("/step"));
+  H5Fclose(file);
+}
+
+TEST(Recording, HasTheSameBytesWhateverMemoryHeld) {
+  const ScratchFolder folder;
+  Rng rng = Rng(15).split("bytes");
+  const Recording written = test::random_recording(rng, 3, 300, 20);
+  const auto bytes_of = [&](int perturb) {
+    const std::filesystem::path path = folder / ("run" + std::to_string(perturb) + ".h5");
+    EXPECT_TRUE(ends_in_order([&] {
+      ::mallopt(M_PERTURB, perturb);
+      save_recording(path, written);
+    }));
+    std::ifstream file(path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  const std::string bytes = bytes_of(1);
+  EXPECT_GT(bytes.size(), 100'000U);
+  EXPECT_EQ(bytes_of(0x5a), bytes);
 }
 
 TEST(Recording, KeepsTheResultOfARunThatClosedAndHasNoneOtherwise) {
