@@ -293,10 +293,11 @@ class Robot(unittest.TestCase):
         for form, option, value, right in (("urscript", "--period", 0.1, "ros-trajectory"), ("urscript", "--every", 3, "mcap or csv"),
                                            ("ros-trajectory", "--vacuum-output", 3, "urscript"), ("mc-rtc-csv", "--period", 0.04, "ros-trajectory"),
                                            ("mcap", "--sequence", 1, "mc-rtc-flat"), ("csv", "--compression", "none", "mcap"),
-                                           ("csv", "--urdf", "x.urdf", "mcap")):
+                                           ("csv", "--urdf", "x.urdf", "mcap"), ("csv", "--encoding", "json", "mcap"),
+                                           ("moveit-scene", "--load", None, "glb"), ("csv", "--time", 1, "glb or moveit-scene")):
             with self.subTest(form, option=option):
-                scenario = () if form in ("mcap", "csv") else ("--scenario", CELL)
-                result = snug("export", path, "--format", form, *scenario, option, value, "-o", self.folder / "x")
+                scenario = () if form in ("mcap", "csv", "moveit-scene") else ("--scenario", CELL)
+                result = snug("export", path, "--format", form, *scenario, option, *([] if value is None else [value]), "-o", self.folder / "x")
                 self.assert_refused(result, option, f"with --format {form}", right)
 
     def test_export_refuses_a_vacuum_timeout_out_of_range_and_a_tempo_or_a_swing_that_is_misspelt(self):
@@ -591,11 +592,12 @@ class Views(unittest.TestCase):
         self.assertFalse((self.path / "x.png").exists())
 
     def test_export_writes_mcap_and_the_table(self):
-        for name, begin in (("mcap", b"\x89MCAP0\r\n"), ("csv", b"t;")):
+        for name, begin in (("mcap", b"\x89MCAP0\r\n"), ("csv", b"t;"), ("moveit-scene", b"# moveit_msgs/PlanningScene")):
             out = self.path / f"drop.{name}"
             result = snug("export", self.recording, "--format", name, "-o", out)
             self.assertEqual(result.returncode, 0, result.stderr)
             self.assertTrue(out.read_bytes().startswith(begin))
+        self.assertIn('frame_id: "world"', (self.path / "drop.moveit-scene").read_text())
         table = self.path / "direct.csv"
         snug("simulate", DROP, "--until", 1, "--csv", table)
         self.assertEqual((self.path / "drop.csv").read_bytes(), table.read_bytes())

@@ -156,6 +156,7 @@ class WholeFiles(Folder):
         return {"run.html": ("report", recording, "-o"), "run.svg": ("plot", recording, "--what", "speed", "-o"),
                 "run.mcap": ("export", recording, "--format", "mcap", "-o"),
                 "run.csv": ("export", recording, "--format", "csv", "-o"),
+                "run.scene.yaml": ("export", recording, "--format", "moveit-scene", "-o"),
                 "arm.script": ("export", program, "--format", "urscript", "--unchecked", "--scenario", CELL, "-o"),
                 "direct.csv": ("simulate", DROP, "--until", 0.3, "--csv"), "direct.h5": ("simulate", DROP, "--until", 0.3, "-o"),
                 "new.csv": ("program", CELL, PLACEMENTS, "--sequence", "1", "-o"),

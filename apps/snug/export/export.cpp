@@ -18,6 +18,7 @@
 #include "snug/record/csv.hpp"
 #include "snug/replay/glb_export.hpp"
 #include "snug/replay/mcap_export.hpp"
+#include "snug/replay/moveit_export.hpp"
 
 namespace snug::app {
 namespace {
@@ -26,7 +27,8 @@ int write_mcap(const ExportOptions& options, OutputFile output) {
   record::RecordingReader reader(options.input);
   const replay::McapTotals totals = replay::export_mcap(
       reader, file_name(options.input), options.selection, std::move(output),
-      {.compression = options.compression == "none" ? replay::McapCompression::None : replay::McapCompression::Zstd},
+      {.encoding = options.encoding == "json" ? replay::McapEncoding::Json : replay::McapEncoding::Protobuf,
+       .compression = options.compression == "none" ? replay::McapCompression::None : replay::McapCompression::Zstd},
       find_robot(reader, options.input, options.urdf));
   std::fprintf(stderr, "%s: %zu frames, %llu messages, %.2f MB\n", options.output.c_str(), totals.frames,
                static_cast<unsigned long long>(totals.messages), static_cast<double>(totals.bytes) / 1e6);
@@ -60,6 +62,18 @@ int write_glb(const ExportOptions& options, OutputFile output) {
   return kSuccess;
 }
 
+int write_moveit_scene(const ExportOptions& options, OutputFile output) {
+  record::RecordingReader reader(options.input);
+  expect_recorded(reader, options.input, options.time);
+  const replay::MoveItTotals totals =
+      replay::export_moveit_scene(reader, file_name(options.input), options.time, std::move(output),
+                                  find_robot(reader, options.input, options.urdf));
+  std::fprintf(stderr, "%s: %zu collision objects at %.3f s, in frame %s%s%s\n", options.output.c_str(), totals.objects,
+               totals.time, totals.frame.c_str(), totals.attached.empty() ? "" : ", attached: ",
+               fmt::format("{}", fmt::join(totals.attached, ", ")).c_str());
+  return kSuccess;
+}
+
 /// One format that can be asked for.
 struct ExportFormat {
   const char* name;
@@ -72,6 +86,9 @@ constexpr std::array kFormats = {
     ExportFormat{"csv", "a recording as one table with the column names of mc_rtc logs", write_csv},
     ExportFormat{"glb", "an instant of a recording, or the load alone, as binary glTF for slides, Blender and viewers",
                  write_glb},
+    ExportFormat{"moveit-scene",
+                 "an instant of a recording as moveit_msgs/PlanningScene, YAML: what a planner must avoid",
+                 write_moveit_scene},
     ExportFormat{"urscript", "a program for the controller of a UR robot (no other); needs --scenario", write_urscript},
     ExportFormat{"ros-trajectory",
                  "a program as trajectory_msgs/JointTrajectory and times of the outputs, YAML; needs --scenario",
@@ -87,6 +104,7 @@ Examples:
   snug export run.h5 --format mcap --from 10 --to 20 --every 4 -o part.mcap
   snug export run.h5 --format csv -o run.csv
   snug export run.h5 --format glb --load -o load.glb
+  snug export run.h5 --format moveit-scene --time 20 -o scene.yaml
   snug export program.csv --scenario scenarios/box-demonstrator.yaml --format urscript -o program.script
   snug export program.csv --scenario scenarios/box-demonstrator.yaml --format urscript --dry-run -o dry.script
   snug export program.csv --scenario scenarios/box-demonstrator.yaml --format urscript --from-box BOX028 -o rest.script
@@ -98,9 +116,10 @@ constexpr const char* kPrograms = "urscript ros-trajectory mc-rtc-csv mc-rtc-fla
 /// Options that only some formats have a use for: the formats, then the options.
 constexpr std::array kOptionFormats = {
     std::array{"mcap csv", "--from --to --every"},
-    std::array{"mcap", "--compression"},
-    std::array{"mcap glb", "--urdf"},
-    std::array{"glb", "--time --load"},
+    std::array{"mcap", "--compression --encoding"},
+    std::array{"mcap glb moveit-scene", "--urdf"},
+    std::array{"glb moveit-scene", "--time"},
+    std::array{"glb", "--load"},
     std::array{
         kPrograms,
         "--scenario --items --container --pallet --set --sequence --corrections --controller --tempo --unchecked"},
@@ -173,6 +192,9 @@ void add_export(CLI::App& app, Action& action) {
   add_selection(verb, options.selection);
   verb.option("--compression", options.compression, "NAME", "of mcap: zstd, or none for readers that cannot unpack it",
               one_of({"zstd", "none"}));
+  verb.option("--encoding", options.encoding, "NAME",
+              "of mcap: protobuf, or json, which people can read and which is several times as large",
+              one_of({"protobuf", "json"}));
   verb.option("--scenario", options.scenario, "SCENARIO.yaml",
               "of a program: scenario file with the robot, its limits and gains");
   add_scenario_changes(verb, options.changes);
@@ -207,10 +229,12 @@ void add_export(CLI::App& app, Action& action) {
   verb.flag("--dry-run", options.script.is_dry,
             "of urscript: waypoints as straight moves 20 mm higher, at a quarter of their speed, nothing switched")
       .excludes(from_box);
-  verb.option("--time", options.time, "SECONDS", "of glb: the instant (default: the end)", finite());
+  verb.option("--time", options.time, "SECONDS", "of glb and moveit-scene: the instant (default: the end)", finite());
   verb.flag("--load", options.is_load_only, "of glb: only the container and the boxes in it, in the container's frame");
-  verb.option("--urdf", options.urdf, "FILE.urdf",
-              "of mcap and glb: how the robot in it looks (default: the file that its scenario names)");
+  verb.option(
+      "--urdf", options.urdf, "FILE.urdf",
+      "of mcap, glb and moveit-scene: the robot in it, how it looks and where its root stands (default: the file that "
+      "its scenario names)");
 }
 
 }  // namespace snug::app

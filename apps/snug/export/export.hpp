@@ -19,10 +19,11 @@ struct ExportOptions {
   std::string format;  ///< name in export_formats()
   std::string output;
   replay::Selection selection;
-  std::string compression = "zstd";  ///< or none
-  std::optional<std::string> urdf;   ///< of the robot in a recording; absent: looked for
-  std::optional<double> time;        ///< s, of one instant; absent: the end
-  bool is_load_only = false;         ///< the container and the boxes in it
+  std::string compression = "zstd";   ///< or none
+  std::string encoding = "protobuf";  ///< or json
+  std::optional<std::string> urdf;    ///< of the robot in a recording; absent: looked for
+  std::optional<double> time;         ///< s, of one instant; absent: the end
+  bool is_load_only = false;          ///< the container and the boxes in it
   // of programs
   std::string scenario;  ///< its robot, limits and gains
   ScenarioChanges changes;

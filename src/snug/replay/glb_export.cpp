@@ -13,6 +13,7 @@
 #include "snug/core/write_file.hpp"
 #include "snug/replay/internal/body_colours.hpp"
 #include "snug/replay/internal/glb_mesh.hpp"
+#include "snug/replay/internal/instant.hpp"
 #include "snug/replay/internal/mcap_messages.hpp"
 #include "snug/replay/internal/recorded_scenario.hpp"
 #include "snug/replay/internal/robot_look.hpp"
@@ -158,14 +159,6 @@ class GlbDocument {
   std::size_t bodies_ = 0, triangles_ = 0;
 };
 
-std::size_t nearest_frame(const std::vector<double>& times, const std::optional<double>& time) {
-  if (!time) return times.size() - 1;
-  const auto after = std::ranges::lower_bound(times, *time);
-  const auto index = static_cast<std::size_t>(after - times.begin());
-  if (index == times.size()) return index - 1;
-  return index > 0 && *time - times[index - 1] <= times[index] - *time ? index - 1 : index;
-}
-
 /// Does a box lie in the container, or on the pallet? Not one that the cup holds over it.
 bool is_packed(const record::RecordingHeader& header, const record::Frame& frame, std::size_t body) {
   if (header.bodies[body].kind != record::BodyKind::Dynamic || frame.cup.attached_body == static_cast<int>(body))
@@ -245,7 +238,7 @@ GlbTotals export_glb(record::RecordingReader& reader, const std::string& name, c
   if (settings.load_only && header.container.name.empty())
     throw InputError(name, "", "a recording without a container", "one of a cell that packs");
   record::Frame frame;
-  reader.read_frame(nearest_frame(reader.times(), settings.time), frame);
+  reader.read_frame(internal::nearest_frame(reader.times(), settings.time), frame);
   GlbDocument document("snug " + header.version, {{"recording", name}, {"time_s", frame.time}});
   GlbScene(header, frame, settings, robot).add_to(document);
   const std::string bytes = document.bytes();

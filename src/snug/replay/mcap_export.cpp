@@ -11,6 +11,7 @@
 #include "snug/motion/waypoint_name.hpp"
 #include "snug/replay/internal/mcap_messages.hpp"
 #include "snug/replay/internal/mcap_scene.hpp"
+#include "snug/replay/internal/protobuf_messages.hpp"
 #include "snug/replay/internal/recorded_scenario.hpp"
 #include "snug/replay/internal/robot_frames.hpp"
 #include "snug/replay/internal/robot_look.hpp"
@@ -25,18 +26,32 @@ using internal::Json;
 /// Of the robot: viewers of MCAP run on graphics cards.
 constexpr std::size_t kMostTriangles = 200'000;
 
-/// One topic: times grow strictly, whatever the recording's rounding and coincidences.
+/// The file and what its messages are encoded with.
+struct McapSink {
+  McapWriter& writer;
+  internal::ProtobufMessages* protobuf;  ///< null: JSON
+};
+
+/// One topic: times grow strictly, whatever the recording's rounding and coincidences. A message that there is as JSON
+/// only is JSON in every file.
 class Topic {
  public:
-  Topic(McapWriter& writer, const std::string& name, McapSchema schema)
-      : writer_(writer), id_(writer.add_channel(name, schema_name(schema), schema_text(schema))) {}
+  Topic(McapSink sink, const std::string& name, McapSchema schema)
+      : writer_(sink.writer),
+        protobuf_(sink.protobuf),
+        type_(protobuf_ != nullptr ? protobuf_name(schema) : ""),
+        id_(type_.empty()
+                ? writer_.add_channel(name, schema_name(schema), schema_text(schema), McapEncoding::Json)
+                : writer_.add_channel(name, type_, protobuf_->descriptors_of(type_), McapEncoding::Protobuf)) {}
   void write(std::uint64_t ns, const Json& message) {
     last_ = last_ ? std::max(ns, *last_ + 1) : ns;
-    writer_.write(id_, *last_, internal::to_text(message));
+    writer_.write(id_, *last_, type_.empty() ? internal::to_text(message) : protobuf_->encode(type_, message));
   }
 
  private:
   McapWriter& writer_;
+  internal::ProtobufMessages* protobuf_;
+  std::string type_;  ///< of protocol buffers; empty: JSON
   std::uint16_t id_;
   std::optional<std::uint64_t> last_;
 };
@@ -56,7 +71,7 @@ std::vector<std::string> row_names(const record::RecordingHeader& header) {
 
 class Exporter {
  public:
-  Exporter(McapWriter& writer, const record::RecordingHeader& header, const RobotDescription& robot);
+  Exporter(McapSink sink, const record::RecordingHeader& header, const RobotDescription& robot);
   void add(const record::Frame& frame);
   void add(const record::Event& event);
 
@@ -69,13 +84,14 @@ class Exporter {
   /// The URDF and how its links look: once, each fixed to the frame of its link.
   void write_robot(std::uint64_t ns);
 
+  const bool is_json_;
   const record::RecordingHeader& header_;
   const RobotDescription& robot_;
   std::optional<model::Scenario> scenario_;
   std::vector<std::string> row_names_;
   Topic tf_static_, tf_, scene_, cup_scene_, events_, program_;
   Topic tool_pose_, tool_command_, tool_twist_, cup_state_, cup_wrench_, flange_wrench_, solver_;
-  std::optional<Topic> joints_, description_, robot_scene_;
+  std::optional<Topic> joints_, event_data_, description_, robot_scene_;
   std::vector<internal::LinkLook> looks_;
   internal::RobotFrames robot_frames_;
   bool is_first_ = true;
@@ -84,29 +100,32 @@ class Exporter {
   int row_ = -1;
 };
 
-Exporter::Exporter(McapWriter& writer, const record::RecordingHeader& header, const RobotDescription& robot)
-    : header_(header),
+Exporter::Exporter(McapSink sink, const record::RecordingHeader& header, const RobotDescription& robot)
+    : is_json_(sink.protobuf == nullptr),
+      header_(header),
       robot_(robot),
       scenario_(internal::scenario_of(header)),
       row_names_(row_names(header)),
-      tf_static_(writer, "/tf_static", McapSchema::FrameTransforms),
-      tf_(writer, "/tf", McapSchema::FrameTransforms),
-      scene_(writer, "/scene", McapSchema::SceneUpdate),
-      cup_scene_(writer, "/cup/scene", McapSchema::SceneUpdate),
-      events_(writer, "/events", McapSchema::Log),
-      program_(writer, "/program", McapSchema::ProgramState),
-      tool_pose_(writer, "/tool/pose", McapSchema::PoseInFrame),
-      tool_command_(writer, "/tool/pose_command", McapSchema::PoseInFrame),
-      tool_twist_(writer, "/tool/twist", McapSchema::TwistStamped),
-      cup_state_(writer, "/cup/state", McapSchema::CupState),
-      cup_wrench_(writer, "/cup/wrench", McapSchema::WrenchStamped),
-      flange_wrench_(writer, "/flange/wrench", McapSchema::WrenchStamped),
-      solver_(writer, "/solver", McapSchema::SolverState) {
-  if (!header.joints.empty()) joints_.emplace(writer, "/joint_states", McapSchema::JointState);
+      tf_static_(sink, "/tf_static", McapSchema::FrameTransforms),
+      tf_(sink, "/tf", McapSchema::FrameTransforms),
+      scene_(sink, "/scene", McapSchema::SceneUpdate),
+      cup_scene_(sink, "/cup/scene", McapSchema::SceneUpdate),
+      events_(sink, "/events", McapSchema::Log),
+      program_(sink, "/program", McapSchema::ProgramState),
+      tool_pose_(sink, "/tool/pose", McapSchema::PoseInFrame),
+      tool_command_(sink, "/tool/pose_command", McapSchema::PoseInFrame),
+      tool_twist_(sink, "/tool/twist", McapSchema::TwistStamped),
+      cup_state_(sink, "/cup/state", McapSchema::CupState),
+      cup_wrench_(sink, "/cup/wrench", McapSchema::WrenchStamped),
+      flange_wrench_(sink, "/flange/wrench", McapSchema::WrenchStamped),
+      solver_(sink, "/solver", McapSchema::SolverState) {
+  if (!header.joints.empty())
+    joints_.emplace(sink, "/joint_states", is_json_ ? McapSchema::JointState : McapSchema::JointStates);
+  if (!is_json_) event_data_.emplace(sink, "/events/data", McapSchema::Event);
   if (robot.urdf.empty()) return;
-  description_.emplace(writer, "/robot_description", McapSchema::String);
+  description_.emplace(sink, "/robot_description", McapSchema::String);
   looks_ = internal::find_looks(header, robot, kMostTriangles);
-  if (!looks_.empty()) robot_scene_.emplace(writer, "/robot/scene", McapSchema::SceneUpdate);
+  if (!looks_.empty()) robot_scene_.emplace(sink, "/robot/scene", McapSchema::SceneUpdate);
 }
 
 void Exporter::write_robot(std::uint64_t ns) {
@@ -161,7 +180,10 @@ void Exporter::write_tool(std::uint64_t ns, const record::Frame& frame) {
   cup_wrench_.write(ns, internal::wrench_json(ns, internal::kLipFrame, frame.cup.F_PSo_S));
   flange_wrench_.write(ns, internal::wrench_json(ns, internal::kFlangeFrame, frame.F_flange));
   solver_.write(ns, internal::solver_json(ns, frame));
-  if (joints_) joints_->write(ns, internal::joints_json(ns, header_.joints, frame.joints));
+  if (joints_) {
+    joints_->write(ns, is_json_ ? internal::joints_json(ns, header_.joints, frame.joints)
+                                : internal::joint_states_json(ns, header_.joints, frame.joints));
+  }
 }
 
 void Exporter::write_scene(std::uint64_t ns, const record::Frame& frame) {
@@ -204,7 +226,8 @@ void Exporter::add(const record::Frame& frame) {
 
 void Exporter::add(const record::Event& event) {
   const std::uint64_t ns = internal::to_ns(event.time);
-  events_.write(ns, internal::event_json(ns, event));
+  events_.write(ns, is_json_ ? internal::log_with_numbers_json(ns, event) : internal::log_json(ns, event));
+  if (event_data_) event_data_->write(ns, internal::event_json(ns, event));
 }
 
 std::vector<record::Event> events_within(const std::vector<record::Event>& all, double from, double to) {
@@ -243,7 +266,9 @@ McapTotals export_mcap(record::RecordingReader& reader, const std::string& name,
                        OutputFile file, const McapSettings& settings, const RobotDescription& robot) {
   const std::vector<std::size_t> frames = select_frames(reader, name, selection);
   McapWriter writer(std::move(file), settings);
-  Exporter exporter(writer, reader.header(), robot);
+  std::optional<internal::ProtobufMessages> protobuf;
+  if (settings.encoding == McapEncoding::Protobuf) protobuf.emplace();
+  Exporter exporter({writer, protobuf ? &*protobuf : nullptr}, reader.header(), robot);
   const bool is_whole = selection == Selection{};
   const std::vector<double>& times = reader.times();
   const std::vector<record::Event> events =

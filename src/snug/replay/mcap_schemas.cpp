@@ -1,4 +1,5 @@
-// McapSchema: field by field; the ones called foxglove.* have the fields of the public schemas of that name.
+// McapSchema: JSON schemas field by field; the ones called foxglove.* have the fields of the public schemas of that
+// name.
 #include "snug/replay/mcap_schemas.hpp"
 
 #include <nlohmann/json.hpp>
@@ -124,9 +125,27 @@ std::string schema_name(McapSchema schema) {
       return "snug.SolverState";
     case McapSchema::ProgramState:
       return "snug.ProgramState";
+    case McapSchema::JointStates:
+      return "foxglove.JointStates";
+    case McapSchema::Event:
+      return "snug.Event";
   }
   SNUG_CHECK(false, "a schema that exists");
   return "";
+}
+
+std::string protobuf_name(McapSchema schema) {
+  switch (schema) {
+    case McapSchema::TwistStamped:
+      return "snug.TwistStamped";
+    case McapSchema::WrenchStamped:
+      return "snug.WrenchStamped";
+    case McapSchema::JointState:
+    case McapSchema::String:
+      return "";
+    default:
+      return schema_name(schema);
+  }
 }
 
 std::string schema_text(McapSchema schema) {
@@ -172,6 +191,9 @@ std::string schema_text(McapSchema schema) {
     case McapSchema::ProgramState:
       return of("row of the program that is being approached, from 0; -1 none",
                 {{"timestamp", time()}, {"row", integer()}, {"name", text()}});
+    case McapSchema::JointStates:
+    case McapSchema::Event:
+      return "";
   }
   SNUG_CHECK(false, "a schema that exists");
   return "";

@@ -220,19 +220,20 @@ McapWriter::McapWriter(OutputFile file, const McapSettings& settings)
 McapWriter::~McapWriter() = default;
 
 std::uint16_t McapWriter::add_channel(const std::string& topic, const std::string& schema_name,
-                                      const std::string& schema) {
+                                      const std::string& schema, McapEncoding encoding) {
+  const bool is_json = encoding == McapEncoding::Json;
   const auto [at, is_new] = impl_->schemas.try_emplace(schema_name, 0);
   if (is_new) {
     at->second = static_cast<std::uint16_t>(impl_->schemas.size());  // 0 means none
     Bytes bytes;
-    bytes.u16(at->second).text(schema_name).text("jsonschema").text(schema);
+    bytes.u16(at->second).text(schema_name).text(is_json ? "jsonschema" : "protobuf").text(schema);
     const std::string record = record_of(Op::Schema, bytes.str());
     impl_->schema_records += record;
     impl_->definitions += record;
   }
   const auto id = static_cast<std::uint16_t>(impl_->channels.size());
   Bytes bytes;
-  bytes.u16(id).u16(at->second).text(topic).text("json").raw(pairs_of({}));
+  bytes.u16(id).u16(at->second).text(topic).text(is_json ? "json" : "protobuf").raw(pairs_of({}));
   impl_->channels.push_back({record_of(Op::Channel, bytes.str()), 0, 0, {}});
   impl_->definitions += impl_->channels.back().record;
   return id;

@@ -13,8 +13,11 @@
 namespace snug::replay {
 
 enum class McapCompression : std::uint8_t { None, Zstd };
+/// Of messages and their schemas.
+enum class McapEncoding : std::uint8_t { Protobuf, Json };
 
 struct McapSettings {
+  McapEncoding encoding = McapEncoding::Protobuf;  ///< of export_mcap; a McapWriter takes any
   McapCompression compression = McapCompression::Zstd;
   std::size_t chunk_bytes = std::size_t{1} << 20U;  ///< a chunk is closed when it holds as many, before compression
 };
@@ -30,8 +33,10 @@ class McapWriter {
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
 
-  /// A channel of JSON messages that follow `schema` (JSON Schema) of that name; equal names share one schema.
-  std::uint16_t add_channel(const std::string& topic, const std::string& schema_name, const std::string& schema);
+  /// A channel of messages that follow `schema` of that name; equal names share one schema. `schema` is a serialised
+  /// FileDescriptorSet, or JSON Schema.
+  std::uint16_t add_channel(const std::string& topic, const std::string& schema_name, const std::string& schema,
+                            McapEncoding encoding);
   /// Times in ns, strictly increasing within a channel.
   void write(std::uint16_t channel, std::uint64_t time_ns, std::string_view message);
   /// A file within the file.

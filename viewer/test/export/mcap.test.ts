@@ -1,4 +1,5 @@
-// MCAP as snug writes it, read by the format's own indexed reader and compared with the same recording's CSV table.
+// MCAP as snug writes it, read by the format's own indexed reader and compared with the same recording's CSV table. Messages as protocol
+// buffers are compared with these by tests/mcap_test.py.
 
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -34,7 +35,7 @@ beforeAll(() => {
   const at = (name: string): string => join(folder, name);
   snug("program", demonstrator, join(repository, "scenarios/demo-placements.yaml"), "--sequence", "1", "-o", at("p.csv"));
   snug("simulate", demonstrator, "--program", at("p.csv"), "--sequence", "1", "--until", "45", "-o", at("run.h5"));
-  snug("export", at("run.h5"), "--format", "mcap", "-o", at("run.mcap"));
+  snug("export", at("run.h5"), "--format", "mcap", "--encoding", "json", "-o", at("run.mcap"));
   snug("export", at("run.h5"), "--format", "csv", "-o", at("run.csv"));
   bytes = readFileSync(at("run.mcap"));
   const lines = readFileSync(at("run.csv"), "utf8").trim().split("\n").map((line) => line.split(";"));
@@ -178,7 +179,7 @@ describe("an MCAP export", () => {
   });
 
   it("is the same without compression, and refuses what cannot be", async () => {
-    snug("export", join(folder, "run.h5"), "--format", "mcap", "--from", "10", "--to", "12", "--compression", "none", "-o", join(folder, "plain.mcap"));
+    snug("export", join(folder, "run.h5"), "--format", "mcap", "--encoding", "json", "--from", "10", "--to", "12", "--compression", "none", "-o", join(folder, "plain.mcap"));
     const plain = await messagesOf(await opened(readFileSync(join(folder, "plain.mcap"))), { topics: ["/tf"] });
     const same = on("/tf").filter(({ ns }) => ns >= plain[0]!.ns && ns <= plain.at(-1)!.ns);
     expect(plain.map((m) => m.data)).toEqual(same.map((m) => m.data));

@@ -59,7 +59,7 @@ function framesAt(ns: bigint): { of: (frame: string) => Matrix4; parents: Map<st
 const farthest = (a: Matrix4, b: Matrix4): number => Math.max(...a.elements.map((v, i) => Math.abs(v - b.elements[i]!)));
 
 async function exported(name: string, ...words: string[]): Promise<Message[]> {
-  snug("export", join(folder, "run.h5"), "--format", "mcap", ...words, "-o", join(folder, name));
+  snug("export", join(folder, "run.h5"), "--format", "mcap", "--encoding", "json", ...words, "-o", join(folder, name));
   return messagesOf(await opened(readFileSync(join(folder, name))));
 }
 

@@ -88,6 +88,18 @@ Json joints_json(std::uint64_t ns, const std::vector<std::string>& names,
   return message;
 }
 
+Json joint_states_json(std::uint64_t ns, const std::vector<std::string>& names,
+                       const std::vector<record::JointSample>& joints) {
+  Json states = Json::array();
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    states.push_back({{"name", names[i]},
+                      {"position", joints[i].position},
+                      {"velocity", joints[i].velocity},
+                      {"effort", joints[i].torque}});
+  }
+  return {{"timestamp", time_json(ns)}, {"joints", std::move(states)}};
+}
+
 Json solver_json(std::uint64_t ns, const record::Frame& frame) {
   static constexpr const char* kStatus[] = {"converged", "not converged", "nothing to solve", "failed"};
   return {{"timestamp", time_json(ns)},
@@ -97,20 +109,30 @@ Json solver_json(std::uint64_t ns, const record::Frame& frame) {
           {"contacts", frame.contacts.size()}};
 }
 
-Json event_json(std::uint64_t ns, const record::Event& event) {
+Json log_json(std::uint64_t ns, const record::Event& event) {
   std::string text = event.kind;
   if (!event.body.empty()) text += " " + event.body;
   if (!event.text.empty()) text += ": " + event.text;
-  Json message = {{"timestamp", time_json(ns)},
-                  {"level", level_of(event.kind)},
-                  {"message", text},
-                  {"name", event.body},
-                  {"file", ""},
-                  {"line", 0},
-                  {"kind", event.kind}};
+  return {{"timestamp", time_json(ns)},
+          {"level", level_of(event.kind)},
+          {"message", text},
+          {"name", event.body},
+          {"file", ""},
+          {"line", 0}};
+}
+
+Json log_with_numbers_json(std::uint64_t ns, const record::Event& event) {
+  Json message = log_json(ns, event);
+  message["kind"] = event.kind;
   Json& numbers = message["numbers"] = Json::object();
   for (const auto& number : event.numbers) numbers[number.name] = number.value;
   return message;
+}
+
+Json event_json(std::uint64_t ns, const record::Event& event) {
+  Json numbers = Json::array();
+  for (const auto& number : event.numbers) numbers.push_back({{"name", number.name}, {"value", number.value}});
+  return {{"timestamp", time_json(ns)}, {"kind", event.kind}, {"body", event.body}, {"numbers", std::move(numbers)}};
 }
 
 }  // namespace snug::replay::internal

@@ -38,7 +38,15 @@ inline constexpr std::string_view kFlangeFrame = "F";
 [[nodiscard]] Json cup_json(std::uint64_t ns, const record::CupSample& cup, const record::RecordingHeader& header);
 [[nodiscard]] Json joints_json(std::uint64_t ns, const std::vector<std::string>& names,
                                const std::vector<record::JointSample>& joints);
+/// The same as foxglove.JointStates.
+[[nodiscard]] Json joint_states_json(std::uint64_t ns, const std::vector<std::string>& names,
+                                     const std::vector<record::JointSample>& joints);
 [[nodiscard]] Json solver_json(std::uint64_t ns, const record::Frame& frame);
+/// foxglove.Log.
+[[nodiscard]] Json log_json(std::uint64_t ns, const record::Event& event);
+/// The same with `kind` and `numbers`.
+[[nodiscard]] Json log_with_numbers_json(std::uint64_t ns, const record::Event& event);
+/// What foxglove.Log does not have fields for, as snug.Event.
 [[nodiscard]] Json event_json(std::uint64_t ns, const record::Event& event);
 
 }  // namespace snug::replay::internal

@@ -20,6 +20,9 @@ namespace {
 
 using test::ScratchFolder;
 
+/// What this reader reads; protocol buffers are compared with it by tests/mcap_test.py.
+const McapSettings kJson = {.encoding = McapEncoding::Json};
+
 std::string content_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
@@ -134,7 +137,7 @@ std::map<std::string, std::vector<std::pair<std::uint64_t, nlohmann::json>>> mes
 TEST(McapWriter, ChecksumsCoverDataAndSummary) {
   const ScratchFolder folder;
   for (const McapCompression compression : {McapCompression::None, McapCompression::Zstd}) {
-    const std::string file = random_export(folder / "", {compression, 20'000});
+    const std::string file = random_export(folder / "", {McapEncoding::Json, compression, 20'000});
     const std::vector<Record> records = records_of_file(file);
     const auto end = std::find_if(records.begin(), records.end(), [](const Record& r) { return r.op == 0x0F; });
     ASSERT_NE(end, records.end());
@@ -150,7 +153,7 @@ TEST(McapWriter, ChecksumsCoverDataAndSummary) {
 
 TEST(McapWriter, IndicesLeadToTheirChunksAndMessages) {
   const ScratchFolder folder;
-  const std::string file = random_export(folder / "", {McapCompression::Zstd, 20'000});
+  const std::string file = random_export(folder / "", {McapEncoding::Json, McapCompression::Zstd, 20'000});
   std::map<std::size_t, Record> by_place;
   for (const Record& record : records_of_file(file)) by_place.emplace(record.at, record);
   std::size_t chunks = 0, indexed = 0;
@@ -189,7 +192,7 @@ TEST(McapWriter, IndicesLeadToTheirChunksAndMessages) {
 
 TEST(McapExport, TimesGrowStrictlyInEveryTopic) {
   const ScratchFolder folder;
-  const auto messages = messages_of(random_export(folder / "", {}));
+  const auto messages = messages_of(random_export(folder / "", kJson));
   EXPECT_EQ(messages.at("/tf").size(), 80u);
   EXPECT_EQ(messages.at("/flange/wrench").size(), 80u);
   for (const auto& [topic, list] : messages) {
@@ -201,7 +204,7 @@ TEST(McapExport, DrawsABodyOnlyWhileItIsThere) {
   const ScratchFolder folder;
   Rng rng = Rng(11).split("mcap");
   const record::Recording recording = test::random_recording(rng, 80);
-  const auto messages = messages_of(random_export(folder / "", {}));
+  const auto messages = messages_of(random_export(folder / "", kJson));
   const auto& scenes = messages.at("/scene");
   std::size_t at = 0;
   for (const record::Frame& frame : recording.frames) {
@@ -224,7 +227,7 @@ TEST(McapExport, DrawsABodyOnlyWhileItIsThere) {
 
 TEST(McapExport, TakesOnlyTheFramesAskedForAndTheEventsAmongThem) {
   const ScratchFolder folder;
-  const auto messages = messages_of(random_export(folder / "", {}, {0.1, 0.3, 3}));
+  const auto messages = messages_of(random_export(folder / "", kJson, {0.1, 0.3, 3}));
   EXPECT_EQ(messages.at("/tf").size(), 9u);  // frames of 0.104 s .. 0.296 s, every third
   if (!messages.contains("/events")) return;
   for (const auto& [time, event] : messages.at("/events")) EXPECT_TRUE(time >= 100'000'000 && time <= 300'000'000);
@@ -236,7 +239,7 @@ TEST(McapExport, TellsTheJointsOfARobotToTheLastBit) {
   const record::Recording recording = test::random_robot_recording(rng, 20);
   record::save_recording(folder / "run.h5", recording);
   record::RecordingReader reader(folder / "run.h5");
-  (void)export_mcap(reader, "run.h5", {}, folder / "run.mcap");
+  (void)export_mcap(reader, "run.h5", {}, folder / "run.mcap", kJson);
   const auto messages = messages_of(content_of(folder / "run.mcap"));
   ASSERT_EQ(messages.at("/joint_states").size(), 20u);
   for (std::size_t i = 0; i < 20; ++i) {
@@ -249,12 +252,12 @@ TEST(McapExport, TellsTheJointsOfARobotToTheLastBit) {
     }
   }
   const ScratchFolder other;
-  EXPECT_FALSE(messages_of(random_export(other / "", {})).contains("/joint_states"));
+  EXPECT_FALSE(messages_of(random_export(other / "", kJson)).contains("/joint_states"));
 }
 
 TEST(McapExport, WritesTheSameBytesAgain) {
   const ScratchFolder folder;
-  EXPECT_EQ(random_export(folder / "", {}), random_export(folder / "", {}));
+  EXPECT_EQ(random_export(folder / "", kJson), random_export(folder / "", kJson));
 }
 
 TEST(McapWriter, LeavesNothingWhenItCannotWriteOrIsNotClosed) {
@@ -264,7 +267,7 @@ TEST(McapWriter, LeavesNothingWhenItCannotWriteOrIsNotClosed) {
   EXPECT_THROW(McapWriter(folder / "b.mcap"), InputError);
   {
     McapWriter writer(folder / "c.mcap");
-    writer.write(writer.add_channel("/a", "a", "{}"), 1, "{}");
+    writer.write(writer.add_channel("/a", "a", "{}", McapEncoding::Json), 1, "{}");
   }
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / ""), {}), 1);  // the folder of that name
 }
@@ -272,7 +275,7 @@ TEST(McapWriter, LeavesNothingWhenItCannotWriteOrIsNotClosed) {
 TEST(McapWriter, WritesAFileWithoutMessages) {
   const ScratchFolder folder;
   McapWriter writer(folder / "a.mcap");
-  (void)writer.add_channel("/a", "a", "{}");
+  (void)writer.add_channel("/a", "a", "{}", McapEncoding::Json);
   writer.close();
   const std::vector<Record> records = records_of_file(content_of(folder / "a.mcap"));
   EXPECT_EQ(std::count_if(records.begin(), records.end(), [](const Record& r) { return r.op == 0x06; }), 0);
