@@ -20,6 +20,7 @@ from . import _core, agent
 from ._core import (Arm, Cell, CellSnapshot, Packer, Program, Scenario, World, WorldSnapshot,
                     agent_names, load_program, parse_program, parse_scenario)
 from ._errors import InputError
+from ._exports import to_rerun, to_usd
 from ._tools import Cup, matrix, pose
 from ._results import Result, Recording, pack, report, simulate
 from ._scenarios import load_scenario, scenario_names
@@ -41,4 +42,5 @@ def __getattr__(name: str) -> Any:
 
 __all__ = ["Arm", "Cell", "CellSnapshot", "Cup", "InputError", "Packer", "Program", "Recording", "Result", "Scenario",
            "World", "WorldSnapshot", "agent", "agent_names", "env", "load_program", "load_scenario", "matrix", "pack", "parse_program",
-           "parse_scenario", "pose", "report", "scenario_names", "simulate"]
+           "parse_scenario", "pose", "report", "scenario_names", "simulate",
+           "to_rerun", "to_usd"]

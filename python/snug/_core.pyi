@@ -281,6 +281,11 @@ class Recording:
     def names(self) -> List[str]:
         """Of the bodies."""
     @property
+    def bodies(self) -> List[Dict[str, Any]]:
+        """name, type, kind ("static", "kinematic", "dynamic"), mass [kg], shapes: each with kind ("box", "capsule", "cylinder",
+        "hull"), pose in the body, and size (edges), radius and length along z (without the ends of a capsule), or vertices and
+        triangles, m."""
+    @property
     def joint_names(self) -> List[str]: ...
     @property
     def sequence(self) -> str: ...

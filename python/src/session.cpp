@@ -8,6 +8,7 @@
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
+#include "snug/geometry/convex_hull.hpp"
 #include "snug/motion/program_csv.hpp"
 #include "snug/record/reader.hpp"
 #include "snug/record/writer.hpp"
@@ -256,6 +257,51 @@ class Recording {
   record::RecordingReader reader_;
 };
 
+/// "kind", "pose" in the body, and the sizes of that kind; a hull with the triangles of its surface.
+py::dict shape_of(const record::ShapeInfo& shape) {
+  static constexpr const char* kKinds[] = {"box", "capsule", "hull", "cylinder"};
+  py::dict entry;
+  entry["kind"] = kKinds[static_cast<std::size_t>(shape.kind)];
+  Array pose(py::ssize_t{7});
+  const Quaternion& q = shape.X_BG.quat;
+  const double numbers[7] = {shape.X_BG.p.x(), shape.X_BG.p.y(), shape.X_BG.p.z(), q.w(), q.x(), q.y(), q.z()};
+  std::copy(std::begin(numbers), std::end(numbers), pose.mutable_data());
+  entry["pose"] = pose;
+  if (shape.kind == record::ShapeKind::Box) {
+    entry["size"] = std::vector<double>{2.0 * shape.half.x(), 2.0 * shape.half.y(), 2.0 * shape.half.z()};
+  } else if (shape.kind != record::ShapeKind::Hull) {
+    entry["radius"] = shape.radius;
+    entry["length"] = 2.0 * shape.half_length;
+  } else if (const auto hull = geometry::make_convex_hull(shape.vertices)) {
+    std::vector<std::array<double, 3>> vertices;
+    std::vector<std::array<int, 3>> triangles;
+    for (const Vector3& v : hull->vertices) vertices.push_back({v.x(), v.y(), v.z()});
+    for (const std::vector<int>& face : hull->faces) {
+      for (std::size_t i = 2; i < face.size(); ++i) triangles.push_back({face[0], face[i - 1], face[i]});
+    }
+    entry["vertices"] = vertices;
+    entry["triangles"] = triangles;
+  }
+  return entry;
+}
+
+py::list bodies_of(const record::RecordingHeader& header) {
+  static constexpr const char* kKinds[] = {"static", "kinematic", "dynamic"};
+  py::list list;
+  for (const record::BodyInfo& body : header.bodies) {
+    py::dict entry;
+    entry["name"] = body.name;
+    entry["type"] = body.type;
+    entry["kind"] = kKinds[static_cast<std::size_t>(body.kind)];
+    entry["mass"] = body.mass;
+    py::list shapes;
+    for (const record::ShapeInfo& shape : body.shapes) shapes.append(shape_of(shape));
+    entry["shapes"] = shapes;
+    list.append(entry);
+  }
+  return list;
+}
+
 }  // namespace
 
 void bind_session(py::module_& m) {
@@ -287,6 +333,7 @@ void bind_session(py::module_& m) {
                                for (const record::BodyInfo& body : r.header().bodies) names.push_back(body.name);
                                return names;
                              })
+      .def_property_readonly("bodies", [](const Recording& r) { return bodies_of(r.header()); })
       .def_property_readonly("joint_names", [](const Recording& r) { return r.header().joints; })
       .def_property_readonly("sequence", [](const Recording& r) { return r.header().sequence; })
       .def_property_readonly("scenario_text", [](const Recording& r) { return r.header().scenario_text; })

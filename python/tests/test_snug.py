@@ -2,6 +2,7 @@
 import csv
 import dataclasses
 import gc
+import importlib.util
 import io
 import json
 import threading
@@ -427,6 +428,23 @@ def test_a_report_is_one_file(demonstrator, tmp_path):
     text = page.read_text()
     assert "<html" in text and len(text) > 100_000
     assert "<iframe" in snug.Recording(record)._repr_html_()
+
+
+def test_a_recording_tells_bodies_and_other_formats_name_their_package(tmp_path):
+    record = tmp_path / "slide.h5"
+    snug.simulate(snug.load_scenario(SCENARIOS / "drop.yaml"), until=0.1, record=record)
+    recording = snug.Recording(record)
+    bodies = recording.bodies
+    assert [body["name"] for body in bodies] == recording.names
+    parcel = bodies[recording.names.index("parcel")]
+    assert parcel["kind"] == "dynamic" and parcel["mass"] > 0.0
+    assert [shape["kind"] for shape in parcel["shapes"]] == ["box"]
+    assert len(parcel["shapes"][0]["size"]) == 3 and parcel["shapes"][0]["pose"].shape == (7,)
+    for write, module, name in ((snug.to_rerun, "rerun", "run.rrd"), (snug.to_usd, "pxr", "run.usda")):
+        if importlib.util.find_spec(module) is None:
+            with pytest.raises(ImportError, match=r"pip install snug\["):
+                write(record, tmp_path / name)
+        assert not (tmp_path / name).exists()
 
 
 def test_objects_say_what_they_are(demonstrator, world):
