@@ -25,6 +25,8 @@ Handle create(hid_t file, const ColumnSpec& spec, const Dims& dims, const Dims& 
   const Handle space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), limit.data()), spec.path);
   const Handle properties(H5Pcreate(H5P_DATASET_CREATE), spec.path);
   check(H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()), spec.path);
+  check(H5Pset_obj_track_times(properties.get(), false),
+        spec.path);  // same content, same bytes, whenever it is written
   if (with_deflate) check(H5Pset_deflate(properties.get(), 1), spec.path);
   set_fill(properties.get(), spec.type);
   const Handle links(H5Pcreate(H5P_LINK_CREATE), spec.path);

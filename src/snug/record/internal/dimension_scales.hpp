@@ -12,9 +12,9 @@ inline constexpr const char* kTwistPart = "/twist_part";
 inline constexpr const char* kWrenchPart = "/wrench_part";
 inline constexpr const char* kAxisPart = "/xyz";
 
-/// Writes the parts and makes `/time`, `/events/time`, `/bodies/name`, `/joints/name` and the parts scales of every dataset with such
-/// an axis (HDF5 Dimension Scales Specification 1.1). Once, when all datasets are there and nothing was committed:
-/// readers of this module need none of it.
+/// Writes the parts and makes `/time`, `/events/time`, `/bodies/name`, `/joints/name` and the parts scales of every
+/// dataset with such an axis (HDF5 Dimension Scales Specification 1.1). Once, when all datasets are there and nothing
+/// was committed: readers of this module need none of it.
 void write_dimension_scales(hid_t file, bool has_bodies, bool has_joints);
 
 /// Is `unit` one of physics for every number of a dataset, and not the meaning of codes or of row numbers?

@@ -191,7 +191,9 @@ void read_attribute(hid_t object, const char* name, hid_t type, void* value) {
 
 Handle write_dataset(hid_t file, const char* path, hid_t type, const Dims& dims, const void* data) {
   const Handle space = simple_space(dims);
-  Handle dataset(H5Dcreate2(file, path, type, space.get(), with_parents().get(), H5P_DEFAULT, H5P_DEFAULT), path);
+  const Handle properties(H5Pcreate(H5P_DATASET_CREATE), path);
+  check(H5Pset_obj_track_times(properties.get(), false), path);  // same content, same bytes, whenever it is written
+  Handle dataset(H5Dcreate2(file, path, type, space.get(), with_parents().get(), properties.get(), H5P_DEFAULT), path);
   const bool is_empty = std::find(dims.begin(), dims.end(), hsize_t{0}) != dims.end();
   if (!is_empty) check(H5Dwrite(dataset.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), path);
   return dataset;
