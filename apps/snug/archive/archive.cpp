@@ -2,11 +2,8 @@
 #include "apps/snug/command_line/verbs.hpp"
 
 #include <fmt/format.h>
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -16,6 +13,7 @@
 #include "snug/archive_import/measurements.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/record/archive.hpp"
+#include "snug/validation/archive_text.hpp"
 #include "snug/validation/log_table.hpp"
 
 namespace snug::app {
@@ -39,90 +37,22 @@ struct ArchiveMergeOptions {
   std::string output;
 };
 
-using Json = nlohmann::ordered_json;
-using record::ArchiveRecording;
-
-Json times_as_json(const std::vector<double>& times) {
-  if (times.size() < 2) return {{"samples", times.size()}};
-  const double duration = times.back() - times.front();
-  return {{"samples", times.size()},
-          {"start_s", times.front()},
-          {"duration_s", duration},
-          {"rate_Hz", static_cast<double>(times.size() - 1) / duration}};
-}
-
-double tracked_percent(const record::BodyTrack& track) {
-  if (track.poses.empty()) return 0.0;
-  const auto count = std::count_if(track.poses.begin(), track.poses.end(), record::is_tracked);
-  return 100.0 * static_cast<double>(count) / static_cast<double>(track.poses.size());
-}
-
-Json recording_as_json(const ArchiveRecording& recording) {
-  Json json = {{"name", recording.name}, {"remarks", Json::object()}, {"sources", Json::object()}};
-  for (const auto& [key, text] : recording.remarks) json["remarks"][key] = text;
-  const auto add = [&](const char* source, const std::vector<double>& times) {
-    if (!times.empty()) json["sources"][source] = times_as_json(times);
-  };
-  add("motion_capture", recording.motion_capture.times);
-  add("force_torque", recording.force_torque.times);
-  add("robot", recording.robot.times);
-  json["bodies"] = Json::array();
-  for (const record::BodyTrack& track : recording.motion_capture.bodies)
-    json["bodies"].push_back({{"name", track.name}, {"tracked_percent", tracked_percent(track)}});
-  json["objects"] = Json::array();
-  for (const record::ArchiveObject& object : recording.objects)
-    json["objects"].push_back({{"name", object.name}, {"mass_kg", object.mass}});
-  return json;
-}
-
-std::string recording_as_text(const ArchiveRecording& recording) {
-  std::string text = recording.name + '\n';
-  for (const auto& [key, value] : recording.remarks) text += fmt::format("  {}: {}\n", key, value);
-  const auto add = [&](const char* source, const std::vector<double>& times) {
-    if (times.size() < 2) return;
-    const double duration = times.back() - times.front();
-    text += fmt::format("  {:<15} {:>8} samples, {:.1f} Hz, {:.1f} s\n", source, times.size(),
-                        static_cast<double>(times.size() - 1) / duration, duration);
-  };
-  add("motion capture", recording.motion_capture.times);
-  add("force/torque", recording.force_torque.times);
-  add("robot", recording.robot.times);
-  for (const record::BodyTrack& track : recording.motion_capture.bodies)
-    text += fmt::format("    {:<20} tracked {:5.1f} %\n", track.name, tracked_percent(track));
-  return text;
-}
-
 int run_archive_list(const ArchiveListOptions& options) {
   const record::ArchiveReader reader(options.archive);
-  Json json = {{"recordings", Json::array()}};
-  std::string text;
-  for (std::size_t i = 0; i < reader.size(); ++i) {
-    const ArchiveRecording recording = reader.read(i);
-    if (options.json)
-      json["recordings"].push_back(recording_as_json(recording));
-    else
-      text += recording_as_text(recording);
-  }
-  print(options.json ? json.dump(2) + "\n" : text);
+  print(options.json ? validation::contents_json(reader) : validation::contents_text(reader));
   return kSuccess;
 }
 
 int run_archive_check(const ArchiveListOptions& options) {
   const record::ArchiveReader reader(options.archive);
-  Json findings = Json::array();
-  for (std::size_t i = 0; i < reader.size(); ++i) {
-    for (const InputError& error : reader.find_defects(i)) {
-      findings.push_back({{"path", error.key}, {"got", error.got}, {"expected", error.expected}});
-      if (!options.json) std::fprintf(stderr, "snug: error: %s\n", error.what());
-    }
-  }
-  if (options.json) {
-    const Json json = {{"ok", findings.empty()}, {"recordings", reader.names()}, {"findings", findings}};
-    print(json.dump(2) + "\n");
-  } else if (findings.empty()) {
+  const std::vector<InputError> defects = record::find_defects(reader);
+  if (options.json)
+    print(validation::defects_json(reader, defects));
+  else if (defects.empty())
     print(fmt::format("{}: {} recordings, whole\n", options.archive, reader.size()));
-  }
-  return findings.empty() ? kSuccess : kBadInput;
+  else
+    for (const InputError& error : defects) std::fprintf(stderr, "snug: error: %s\n", error.what());
+  return defects.empty() ? kSuccess : kBadInput;
 }
 
 archive_import::Hints import_hints(const ArchiveConvertOptions& options) {
@@ -141,7 +71,7 @@ int import_measurements(const ArchiveConvertOptions& options) {
   OutputFile output = reserve(name_all("the measurements", options.inputs), options.output);
   archive_import::Imported imported =
       archive_import::load_all({options.inputs.begin(), options.inputs.end()}, import_hints(options));
-  ArchiveRecording& recording = imported.recording;
+  record::ArchiveRecording& recording = imported.recording;
   if (!options.name.empty()) recording.name = options.name;
   if (!options.note.empty()) recording.remarks = {{"note", options.note}};
   if (!options.sequence.empty()) recording.remarks.emplace_back("sequence", options.sequence);
@@ -166,29 +96,8 @@ int run_archive_convert(const ArchiveConvertOptions& options) {
 }
 
 int run_archive_merge(const ArchiveMergeOptions& options) {
-  record::ArchiveWriter writer(reserve(name_all("an archive", options.archives), options.output));
-  std::map<std::string, record::ArchiveObject> objects;
-  std::string sequence, sequence_of;
-  for (const std::string& path : options.archives) {
-    const record::ArchiveReader reader(path);
-    for (std::size_t i = 0; i < reader.size(); ++i) {
-      const ArchiveRecording recording = reader.read(i);
-      const std::string here(record::find_remark(recording, "sequence"));
-      if (!here.empty() && !sequence.empty() && here != sequence)
-        throw InputError(path, '/' + recording.name, "sequence '" + here + "'",
-                         "'" + sequence + "', that of " + sequence_of);
-      if (sequence.empty()) sequence_of = path;
-      if (sequence.empty()) sequence = here;
-      for (const record::ArchiveObject& object : recording.objects) {
-        const auto [at, is_new] = objects.emplace(object.name, object);
-        if (!is_new && (at->second.mass != object.mass || at->second.dimensions != object.dimensions))
-          throw InputError(path, '/' + recording.name + "/OBJECT/" + object.name, "another mass or size",
-                           "what the recordings before it have");
-      }
-      writer.add(recording);
-    }
-  }
-  writer.close();
+  record::merge_archives({options.archives.begin(), options.archives.end()},
+                         reserve(name_all("an archive", options.archives), options.output));
   return kSuccess;
 }
 

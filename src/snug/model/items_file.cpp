@@ -14,11 +14,11 @@
 #include "snug/core/read_file.hpp"
 #include "snug/core/text.hpp"
 #include "snug/core/units.hpp"
-#include "snug/model/mass_properties.hpp"
 #include "snug/model/internal/orders_json.hpp"
 #include "snug/model/internal/parse.hpp"
 #include "snug/model/internal/scenario_reader.hpp"
 #include "snug/model/internal/scenario_text.hpp"
+#include "snug/model/mass_properties.hpp"
 #include "snug/model/yaml_limits.hpp"
 
 namespace snug::model {

@@ -4,8 +4,8 @@
 #include <numbers>
 
 #include "snug/model/internal/fields.hpp"
-#include "snug/model/mass_properties.hpp"
 #include "snug/model/internal/scenario_reader.hpp"
+#include "snug/model/mass_properties.hpp"
 
 namespace snug::model::internal {
 namespace {

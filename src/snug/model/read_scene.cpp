@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "snug/model/internal/fields.hpp"
-#include "snug/model/mass_properties.hpp"
 #include "snug/model/internal/scenario_reader.hpp"
 #include "snug/model/internal/side_file.hpp"
+#include "snug/model/mass_properties.hpp"
 
 namespace snug::model::internal {
 namespace {

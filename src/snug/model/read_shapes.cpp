@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include "snug/geometry/convex_hull.hpp"
-#include "snug/model/mass_properties.hpp"
 #include "snug/model/internal/scenario_reader.hpp"
 #include "snug/model/internal/side_file.hpp"
+#include "snug/model/mass_properties.hpp"
 #include "snug/model/mesh_file.hpp"
 #include "snug/spatial/matrix6.hpp"
 

@@ -104,6 +104,9 @@ class ArchiveReader {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Of all recordings.
+[[nodiscard]] std::vector<InputError> find_defects(const ArchiveReader& reader);
+
 [[nodiscard]] Archive load_archive(const std::filesystem::path& path);
 
 /// Writes an archive beside its place, one recording at a time, and renames it when it is whole: what was at `path`
@@ -127,5 +130,9 @@ class ArchiveWriter {
 };
 
 void save_archive(OutputFile file, const Archive& archive);
+
+/// All recordings of several archives, in their order: the repetitions of one sequence. Throws InputError for two of one
+/// name, two sequences, and another mass or size of an object.
+void merge_archives(const std::vector<std::filesystem::path>& archives, OutputFile file);
 
 }  // namespace snug::record

@@ -13,7 +13,6 @@
 namespace snug::model {
 namespace {
 
-
 Pose random_pose(Rng& rng) {
   const auto vector = [&rng](double scale) {
     return Vector3(rng.uniform(-scale, scale), rng.uniform(-scale, scale), rng.uniform(-scale, scale));

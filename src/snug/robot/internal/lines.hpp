@@ -50,7 +50,8 @@ struct SixAxes {
 /// Nothing for another arm.
 inline std::optional<SixAxes> six_axes(const ArmModel& arm) {
   const auto is_turning = [](const Joint& joint) { return joint.kind == JointKind::Revolute; };
-  if (arm.joint_count() != 6 || !arm.followers.empty() || !std::ranges::all_of(arm.joints, is_turning)) return std::nullopt;
+  if (arm.joint_count() != 6 || !arm.followers.empty() || !std::ranges::all_of(arm.joints, is_turning))
+    return std::nullopt;
   ArmModel at_root = arm;
   at_root.X_WB = Pose{};
   const ArmPose at = forward(at_root, JointVector::Zero(6));
