@@ -5,5 +5,5 @@ set -eu
 build="$(realpath "$1")"
 venv="$build/exports"
 "$(dirname "$0")/test-venv.sh" "$venv" "mcap_protobuf rosbags yaml rerun pxr pyarrow pandas xarray h5netcdf h5py check_jsonschema kubernetes_validate" \
-  "mcap-protobuf-support rosbags pyyaml rerun-sdk>=0.23 usd-core pyarrow<20 pandas<3 xarray h5netcdf h5py check-jsonschema kubernetes-validate numpy<2" || exit $?
+  "mcap-protobuf-support rosbags pyyaml rerun-sdk==0.23.1 usd-core pyarrow<20 pandas<3 xarray h5netcdf h5py check-jsonschema kubernetes-validate numpy<2" || exit $?
 PYTHONPATH="$build/python" SNUG="$build/snug" exec "$venv/bin/python" -B "$(dirname "$0")/../tests/exports_test.py"
