@@ -9,7 +9,6 @@
 
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
-#include "apps/snug/command_line/verb.hpp"
 #include "snug/archive_import/measurements.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/record/archive.hpp"
@@ -55,22 +54,12 @@ int run_archive_check(const ArchiveListOptions& options) {
   return defects.empty() ? kSuccess : kBadInput;
 }
 
-archive_import::Hints import_hints(const ArchiveConvertOptions& options) {
-  archive_import::Hints hints = options.hints;
-  hints.up = options.up == "z" ? archive_import::UpAxis::Z : archive_import::UpAxis::Y;
-  for (const std::string& rename : options.renames) {
-    const std::size_t at = rename.rfind('=');
-    if (at == std::string::npos || at == 0 || at + 1 == rename.size())
-      throw InputError("command line", "--rename", "'" + rename + "'", "OLD=NEW, such as 'Rigid Body 1=Box013'");
-    hints.names[rename.substr(0, at)] = rename.substr(at + 1);
-  }
-  return hints;
-}
-
 int import_measurements(const ArchiveConvertOptions& options) {
   OutputFile output = reserve(name_all("the measurements", options.inputs), options.output);
-  archive_import::Imported imported =
-      archive_import::load_all({options.inputs.begin(), options.inputs.end()}, import_hints(options));
+  archive_import::Hints hints = options.hints;
+  hints.up = options.up == "z" ? archive_import::UpAxis::Z : archive_import::UpAxis::Y;
+  hints.names = archive_import::parse_names(options.renames, "--rename");
+  archive_import::Imported imported = archive_import::load_all({options.inputs.begin(), options.inputs.end()}, hints);
   record::ArchiveRecording& recording = imported.recording;
   if (!options.name.empty()) recording.name = options.name;
   if (!options.note.empty()) recording.remarks = {{"note", options.note}};

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "apps/snug/command_line/outputs.hpp"
-#include "apps/snug/command_line/verb.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/scene_import/import_scene.hpp"
 

@@ -15,13 +15,18 @@
 #include "apps/snug/common/recordings.hpp"
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
-#include "snug/record/csv.hpp"
+#include "snug/replay/csv_export.hpp"
 #include "snug/replay/glb_export.hpp"
 #include "snug/replay/mcap_export.hpp"
 #include "snug/replay/moveit_export.hpp"
 
 namespace snug::app {
 namespace {
+
+int said(const ExportOptions& options, const auto& totals) {
+  std::fprintf(stderr, "%s: %s\n", options.output.c_str(), to_text(totals).c_str());
+  return kSuccess;
+}
 
 int write_mcap(const ExportOptions& options, OutputFile output) {
   record::RecordingReader reader(options.input);
@@ -30,24 +35,12 @@ int write_mcap(const ExportOptions& options, OutputFile output) {
       {.encoding = options.encoding == "json" ? replay::McapEncoding::Json : replay::McapEncoding::Protobuf,
        .compression = options.compression == "none" ? replay::McapCompression::None : replay::McapCompression::Zstd},
       find_robot(reader, options.input, options.urdf));
-  std::fprintf(stderr, "%s: %zu frames, %llu messages, %.2f MB\n", options.output.c_str(), totals.frames,
-               static_cast<unsigned long long>(totals.messages), static_cast<double>(totals.bytes) / 1e6);
-  return kSuccess;
+  return said(options, totals);
 }
 
 int write_csv(const ExportOptions& options, OutputFile output) {
   record::RecordingReader reader(options.input);
-  record::CsvWriter writer(std::move(output), reader.header());
-  record::Frame frame;
-  const std::vector<std::size_t> frames = replay::select_frames(reader, file_name(options.input), options.selection);
-  for (const std::size_t index : frames) {
-    reader.read_frame(index, frame);
-    writer.append(frame);
-  }
-  writer.close();
-  std::fprintf(stderr, "%s: %zu rows, %.3f s to %.3f s\n", options.output.c_str(), frames.size(),
-               reader.times()[frames.front()], reader.times()[frames.back()]);
-  return kSuccess;
+  return said(options, replay::export_csv(reader, file_name(options.input), options.selection, std::move(output)));
 }
 
 int write_glb(const ExportOptions& options, OutputFile output) {
@@ -57,9 +50,7 @@ int write_glb(const ExportOptions& options, OutputFile output) {
       options.is_load_only ? replay::RobotDescription{} : find_robot(reader, options.input, options.urdf);
   const replay::GlbTotals totals = replay::export_glb(reader, file_name(options.input),
                                                       {options.time, options.is_load_only}, std::move(output), robot);
-  std::fprintf(stderr, "%s: %zu bodies at %.3f s, %zu triangles, %.2f MB\n", options.output.c_str(), totals.bodies,
-               totals.time, totals.triangles, static_cast<double>(totals.bytes) / 1e6);
-  return kSuccess;
+  return said(options, totals);
 }
 
 int write_moveit_scene(const ExportOptions& options, OutputFile output) {
@@ -68,15 +59,12 @@ int write_moveit_scene(const ExportOptions& options, OutputFile output) {
   const replay::MoveItTotals totals =
       replay::export_moveit_scene(reader, file_name(options.input), options.time, std::move(output),
                                   find_robot(reader, options.input, options.urdf));
-  std::fprintf(stderr, "%s: %zu collision objects at %.3f s, in frame %s%s%s\n", options.output.c_str(), totals.objects,
-               totals.time, totals.frame.c_str(), totals.attached.empty() ? "" : ", attached: ",
-               fmt::format("{}", fmt::join(totals.attached, ", ")).c_str());
-  return kSuccess;
+  return said(options, totals);
 }
 
 /// One format that can be asked for.
 struct ExportFormat {
-  const char* name;
+  std::string_view name;
   const char* description;  ///< for --help: what it is made from and who reads it
   int (*write)(const ExportOptions&, OutputFile);
 };
@@ -149,9 +137,7 @@ void refuse_without_effect(const Verb& verb, const std::string& format) {
 
 int run_export(const ExportOptions& options, const Verb& verb) {
   refuse_without_effect(verb, options.format);
-  const auto found = std::find_if(kFormats.begin(), kFormats.end(), [&](const ExportFormat& format) {
-    return std::string_view(format.name) == options.format;
-  });
+  const auto found = std::ranges::find(kFormats, options.format, &ExportFormat::name);
   SNUG_CHECK(found != kFormats.end(), "a format that the parser let pass");
   if (options.scenario.empty() && options.changes.any()) {
     throw InputError("command line", "--items, --container, --pallet", "without --scenario", "a scenario to change");
@@ -181,7 +167,7 @@ void add_export(CLI::App& app, Action& action) {
   std::string footer = "Formats:\n";
   for (const ExportFormat& format : kFormats) {
     names.emplace_back(format.name);
-    footer += std::string("  ") + format.name + std::string(16 - names.back().size(), ' ') + format.description + "\n";
+    footer += fmt::format("  {:<16}{}\n", format.name, format.description);
   }
   const Verb verb(app, action, "export", "write a recording or a program in a format of other programs",
                   footer + kExportExamples);

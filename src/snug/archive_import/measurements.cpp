@@ -116,4 +116,15 @@ Imported load_all(const std::vector<fs::path>& paths, const Hints& hints) {
   return all;
 }
 
+std::map<std::string, std::string> parse_names(const std::vector<std::string>& words, const std::string& key) {
+  std::map<std::string, std::string> names;
+  for (const std::string& word : words) {
+    const std::size_t at = word.rfind('=');
+    if (at == std::string::npos || at == 0 || at + 1 == word.size())
+      throw InputError("command line", key, "'" + word + "'", "OLD=NEW, such as 'Rigid Body 1=Box013'");
+    names[word.substr(0, at)] = word.substr(at + 1);
+  }
+  return names;
+}
+
 }  // namespace snug::archive_import

@@ -23,6 +23,10 @@ struct Hints {
   std::string fixed_frame = {};          ///< of a bag: the frame of /tf that poses are wanted in
 };
 
+/// Of "OLD=NEW". InputError for another form; `key` names where they stand.
+[[nodiscard]] std::map<std::string, std::string> parse_names(const std::vector<std::string>& words,
+                                                             const std::string& key);
+
 struct Imported {
   record::ArchiveRecording recording;  ///< named after the file
   std::vector<std::string> remarks;    ///< a line for each thing that was left out or taken in one of several ways

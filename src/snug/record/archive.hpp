@@ -131,8 +131,8 @@ class ArchiveWriter {
 
 void save_archive(OutputFile file, const Archive& archive);
 
-/// All recordings of several archives, in their order: the repetitions of one sequence. Throws InputError for two of one
-/// name, two sequences, and another mass or size of an object.
+/// All recordings of several archives, in their order: the repetitions of one sequence. Throws InputError for two of
+/// one name, two sequences, and another mass or size of an object.
 void merge_archives(const std::vector<std::filesystem::path>& archives, OutputFile file);
 
 }  // namespace snug::record

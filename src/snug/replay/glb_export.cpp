@@ -2,6 +2,8 @@
 // glTF 2.0 specification (Khronos Group, version 2.0.1).
 #include "snug/replay/glb_export.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -245,6 +247,11 @@ GlbTotals export_glb(record::RecordingReader& reader, const std::string& name, c
   if (bytes.empty()) throw InputError(name, "", "more than 4 GiB of triangles", "a recording of fewer shapes");
   write_file(std::move(file), bytes);
   return {frame.time, document.bodies(), document.triangles(), bytes.size()};
+}
+
+std::string to_text(const GlbTotals& totals) {
+  return fmt::format("{} bodies at {:.3f} s, {} triangles, {:.2f} MB", totals.bodies, totals.time, totals.triangles,
+                     static_cast<double>(totals.bytes) / 1e6);
 }
 
 }  // namespace snug::replay

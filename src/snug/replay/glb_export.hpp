@@ -20,6 +20,8 @@ struct GlbTotals {
   double time = 0.0;  ///< s, of the frame
   std::size_t bodies = 0, triangles = 0, bytes = 0;
 };
+/// "20 bodies at 8.000 s, 1200 triangles, 1.20 MB"
+[[nodiscard]] std::string to_text(const GlbTotals& totals);
 
 /// Writes glTF 2.0 (docs/formats.md, "GLB"): a node for each body that is there. `name` is that of the recording.
 /// Throws InputError for a recording without frames, and with `load_only` for one without a container.

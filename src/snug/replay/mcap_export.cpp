@@ -1,6 +1,8 @@
 // McapExport: which message goes where and when.
 #include "snug/replay/mcap_export.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 #include <vector>
@@ -285,6 +287,11 @@ McapTotals export_mcap(record::RecordingReader& reader, const std::string& name,
   attach_sources(writer, reader, name, robot);
   writer.close();
   return {writer.size(), writer.message_count(), frames.size()};
+}
+
+std::string to_text(const McapTotals& totals) {
+  return fmt::format("{} frames, {} messages, {:.2f} MB", totals.frames, totals.messages,
+                     static_cast<double>(totals.bytes) / 1e6);
 }
 
 }  // namespace snug::replay

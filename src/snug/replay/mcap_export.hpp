@@ -14,6 +14,8 @@ struct McapTotals {
   std::uint64_t messages = 0;
   std::size_t frames = 0;
 };
+/// "40 frames, 1200 messages, 1.20 MB"
+[[nodiscard]] std::string to_text(const McapTotals& totals);
 
 /// Topics and messages: docs/formats.md, "MCAP". `name` is that of the recording; `robot`
 /// is drawn as it is described. Throws InputError for a recording

@@ -223,4 +223,9 @@ MoveItTotals export_moveit_scene(record::RecordingReader& reader, const std::str
   return totals;
 }
 
+std::string to_text(const MoveItTotals& totals) {
+  return fmt::format("{} collision objects at {:.3f} s, in frame {}{}{}", totals.objects, totals.time, totals.frame,
+                     totals.attached.empty() ? "" : ", attached: ", fmt::join(totals.attached, ", "));
+}
+
 }  // namespace snug::replay

@@ -18,6 +18,8 @@ struct MoveItTotals {
   std::string frame;                  ///< that their poses are in
   std::vector<std::string> attached;  ///< to the flange: the gripper, and the body that the cup holds
 };
+/// "12 collision objects at 8.000 s, in frame W, attached: gripper"
+[[nodiscard]] std::string to_text(const MoveItTotals& totals);
 
 /// Writes moveit_msgs/PlanningScene as YAML, a difference to the scene that a planner has (docs/formats.md, "MoveIt
 /// scene"), at the frame nearest to `time` (s; the last without). `name` is that of the recording. Throws InputError

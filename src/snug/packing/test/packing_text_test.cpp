@@ -64,9 +64,9 @@ TEST(ItemText, TableAndJsonSayHowManyBoxesAreRepresented) {
   const std::string table = format_table(two_kinds(), 20.0);
   EXPECT_NE(table.find("R1      300.0    200.0    100.0     1.500       6     75.0\n"), std::string::npos) << table;
   EXPECT_NE(table.find("8 boxes in 3 groups; 75.0 % are within 20 %"), std::string::npos) << table;
-  const auto json = nlohmann::json::parse(format_json(two_kinds()));
-  EXPECT_EQ(json.at("representatives").at(1).at("boxes"), 2);
-  EXPECT_EQ(json.at("covered_percent"), 75.0);
+  const auto result = nlohmann::json::parse(format_json(two_kinds()));
+  EXPECT_EQ(result.at("representatives").at(1).at("boxes"), 2);
+  EXPECT_EQ(result.at("covered_percent"), 75.0);
 }
 
 TEST(DrawOrder, HasEveryBoxOnceAndANameOfItsOwn) {
@@ -90,11 +90,11 @@ TEST(LoadText, SaysWhatIsLoadedOfWhatThereIsAndTheMean) {
   ASSERT_EQ(load.result.boxes.size(), 4U);
   const std::string table = format_load_table({load});
   EXPECT_NE(table.find("A                              4         4    50.00\n"), std::string::npos) << table;
-  const auto json = nlohmann::json::parse(format_load_json({load, load}, 2.0));
-  EXPECT_EQ(json.at("mean_percent"), 50.0);
-  EXPECT_EQ(json.at("problems").at(1).at("available"), 4);
-  EXPECT_EQ(json.at("problems").at(0).at("boxes").size(), 4U);
-  EXPECT_EQ(json.at("time"), 2.0);
+  const auto result = nlohmann::json::parse(format_load_json({load, load}, 2.0));
+  EXPECT_EQ(result.at("mean_percent"), 50.0);
+  EXPECT_EQ(result.at("problems").at(1).at("available"), 4);
+  EXPECT_EQ(result.at("problems").at(0).at("boxes").size(), 4U);
+  EXPECT_EQ(result.at("time"), 2.0);
 }
 
 TEST(DropLoadLimits, CountsTheBoxesThatHadOne) {
