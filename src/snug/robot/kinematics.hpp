@@ -30,7 +30,7 @@ struct ArmPose {
 
 /// J_WE: V_WE_W = J_WE qd.
 [[nodiscard]] Jacobian tool_jacobian(const ArmModel& arm, const ArmPose& at) noexcept;
-/// J_WQ for a point Q [m, W] that moves with `segment`; joints behind it move it not.
+/// J_WQ for a point Q [m, W] that moves with `segment`; joints behind it add nothing.
 [[nodiscard]] Jacobian point_jacobian(const ArmModel& arm, const ArmPose& at, int segment,
                                       const Vector3& p_WQ) noexcept;
 /// d/dt(J_WE) qd: acceleration of E when qdd = 0, linear part first, in W.

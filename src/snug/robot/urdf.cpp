@@ -356,8 +356,8 @@ class Assembler {
 
   [[nodiscard]] bool moves(const RawJoint& raw) const { return on_path_.contains(raw.child) && raw.type != "fixed"; }
 
-  /// What leads a joint in the end, through others that mimic: itself where it moves by itself. Of a circle off the
-  /// path that closes, one of it.
+  /// What leads a joint in the end, through others that mimic: itself where it moves by itself. Joints off the path
+  /// that mimic each other in a circle are led by the one at which the circle closes.
   struct Coupling {
     const RawJoint* leader;
     double ratio = 1.0, offset = 0.0;
