@@ -34,13 +34,13 @@ SourcedScenario load_changed(const std::filesystem::path& file, const ScenarioCh
   return loaded;
 }
 
-const Parcel& require_parcel(const Scenario& scenario, const std::string& id, const std::string& option) {
+const Parcel& require_parcel(const Scenario& scenario, const std::string& id, std::string_view option) {
   if (const Parcel* parcel = find_parcel(scenario, id)) return *parcel;
   std::vector<std::string> ids;
   for (const Parcel& one : scenario.parcels) ids.push_back(one.id);
   const std::string_view nearest = find_nearest(id, ids);
   throw InputError(
-      "command line", option, "'" + id + "'",
+      "command line", std::string(option), "'" + id + "'",
       nearest.empty() ? "a parcel of the scenario" : "a parcel of the scenario, nearest is " + std::string(nearest));
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -35,7 +36,7 @@ struct SourcedScenario {
                                            const std::function<std::string(const std::string&)>& find_file = {});
 
 /// The box that `option` of a command line names. Throws InputError where there is none, with the nearest.
-[[nodiscard]] const Parcel& require_parcel(const Scenario& scenario, const std::string& id, const std::string& option);
+[[nodiscard]] const Parcel& require_parcel(const Scenario& scenario, const std::string& id, std::string_view option);
 /// Takes boxes out of a sequence. Throws InputError for one that is not in it, with the nearest.
 void leave_out(Scenario& scenario, const std::string& sequence, const std::vector<std::string>& boxes);
 
