@@ -32,6 +32,7 @@ environment::Settings settings_of(const py::dict& words) {
       {"max_candidates", whole(s.max_candidates)},
       {"max_steps", whole(s.max_steps)},
       {"settle_time", number(s.settle_time)},
+      {"time_step", number(s.time_step)},
       {"max_displacement", number(s.max_displacement)},
       {"max_tilt", number(s.max_tilt)},
       {"max_flips", whole(s.packing.max_flips)},

@@ -23,6 +23,7 @@ void check(const Settings& s, const Parameters& p) {
   require_number(s.max_steps >= 1, "environment", "max_steps", s.max_steps, "1 or more");
   require_number(s.settle_time > 0.0 && s.settle_time <= 60.0, "environment", "settle_time", s.settle_time,
                  "above 0, at most 60 s");
+  require_number(s.time_step >= 0.0 && s.time_step <= 0.1, "environment", "time_step", s.time_step, "0 .. 0.1 s");
   require_number(s.max_displacement > 0.0, "environment", "max_displacement", s.max_displacement, "above 0 m");
   require_number(s.max_tilt > 0.0, "environment", "max_tilt", s.max_tilt, "above 0 rad");
   require_number(std::abs(p.size_offset) <= 0.02, "environment", "size_offset", p.size_offset, "-0.02 .. 0.02 m");
@@ -52,6 +53,13 @@ model::Scenario with_parameters(model::Scenario scenario, const Parameters& p) {
   scale(scenario.cup.stiffness, p.cup_scale);
   scale(scenario.cup.damping, p.cup_scale);
   model::vary_cups(p.cup_scale, p.cup_scale, 0.0, scenario.gripper);
+  return scenario;
+}
+
+/// With the physics steps that the settings allow.
+model::Scenario with_time_step(model::Scenario scenario, double longest) {
+  const double parts = std::max(1.0, std::ceil(scenario.controller.tick / longest - 1e-9));
+  if (longest > 0.0) scenario.time_step = std::max(scenario.time_step, scenario.controller.tick / parts);
   return scenario;
 }
 
@@ -89,7 +97,7 @@ packing::PackingSettings rules_of(const Settings& settings) {
 struct Environment::State {
   State(const model::Scenario& from, const Settings& asked, const Parameters& parameters)
       : settings(asked),
-        scenario((check(asked, parameters), with_parameters(from, parameters))),
+        scenario((check(asked, parameters), with_time_step(with_parameters(from, parameters), asked.time_step))),
         base(sequence_of(scenario, asked.sequence)),
         container(packing::make_container_state(container_of(scenario))),
         finder(container, rules_of(asked)) {

@@ -266,7 +266,7 @@ TEST(StaticsOfABox, OnTheFloorStaysWhereItWasPutAndTakesNoMoreThanItsTime) {
     ASSERT_TRUE(step.is_placed) << step.reason;
     EXPECT_LT(step.displacement, 0.001);
     EXPECT_GT(game.time(), last);
-    EXPECT_LE(game.time() - last, settings.settle_time + 2.0 * cell_of_boxes().time_step);
+    EXPECT_LE(game.time() - last, settings.settle_time + 2.0 * settings.time_step);
     last = game.time();
   }
 }
@@ -282,6 +282,24 @@ TEST(StaticsOfABox, IsNotPlacedWhereItMovedByMoreThanItMay) {
   EXPECT_GT(step.displacement, 1e-9);
   EXPECT_GT(step.reward, 0.0) << "it is in the container all the same";
   EXPECT_TRUE(step.terminated);
+}
+
+/// Contact is second order where it is smooth: steps four times as long hardly change where the tool leaves a box.
+TEST(ExecutedBox, LongerStepsHardlyChangeWhereItRests) {
+  const auto placed = [](double time_step) {
+    Settings settings = in_mode(Mode::Executed);
+    settings.time_step = time_step;
+    Environment game(cell_of_boxes(), settings);
+    game.reset(1);
+    const double displacement = game.step({.candidate = 0}).displacement;
+    return std::pair(displacement, game.hash());
+  };
+  ASSERT_EQ(cell_of_boxes().time_step, 0.001);
+  const auto [own, own_hash] = placed(0.0);
+  EXPECT_EQ(placed(0.0005).second, own_hash) << "no shorter than the scenario's";
+  EXPECT_EQ(placed(0.004).second, placed(0.0055).second) << "in whole parts of the tick of 8 ms";
+  EXPECT_NE(placed(0.004).second, own_hash);
+  EXPECT_NEAR(placed(0.004).first, own, 5e-5);
 }
 
 TEST(ParametersOfOne, ScaleFrictionMassAndCupAndChangeNoOther) {
@@ -314,6 +332,7 @@ TEST(Refusals, EveryNumberThatCannotBeIsNamed) {
       {"resolution", [](Settings& s, double x) { s.resolution = x; }},
       {"settle_time", [](Settings& s, double x) { s.settle_time = x; }},
       {"max_displacement", [](Settings& s, double x) { s.max_displacement = x; }},
+      {"time_step", [](Settings& s, double x) { s.time_step = x == 0.0 ? 1.0 : x; }},
       {"max_tilt", [](Settings& s, double x) { s.max_tilt = x; }}};
   for (const auto& [key, set] : settings) {
     for (const double bad : {nan, -1.0, 0.0}) {
