@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <string_view>
 
 #include "snug/core/input_error.hpp"
 #include "snug/model/scenario.hpp"
@@ -19,8 +20,8 @@ inline model::Scenario load(const std::string& text, Imported* imported = nullpt
   return model::parse_scenario(scene.yaml, "scene.yaml");
 }
 
-inline const model::Body& body(const model::Scenario& scenario, const std::string& name) {
-  const model::Body* found = model::find_body(scenario, name);
+inline const model::Body& body(const model::Scenario& scenario, std::string_view name) {
+  const model::Body* found = model::find_body(scenario, std::string(name));
   if (found != nullptr) return *found;
   ADD_FAILURE() << "no body " << name;
   return scenario.bodies.front();
