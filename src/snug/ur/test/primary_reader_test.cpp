@@ -80,8 +80,8 @@ TEST(PrimaryReader, VersionsAndPacketsOfOtherKinds) {
 }
 
 TEST(PrimaryReader, PacketsAreToldApart) {
-  const std::string state = some_state();
-  const NextPacket next = next_packet(state + "more");
+  const std::string state = some_state(), stream = state + "more";  // a packet is a view of the stream
+  const NextPacket next = next_packet(stream);
   ASSERT_TRUE(next.packet);
   EXPECT_EQ(*next.packet, state);
   EXPECT_FALSE(next_packet(state.substr(0, state.size() - 1)).packet);
