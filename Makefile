@@ -115,7 +115,7 @@ bench-peers: setup-peers ## the same scenes in Bullet and MuJoCo, in one run; TO
 	@$(call configure-build,bench) && build-bench/bench_peers \
 	  $(if $(TOSSES),--tosses $(TOSSES) --engine snug --engine bullet-si10 --engine mujoco-elliptic-stiff)
 
-figures: build ## make the numbers that README and the documents state, and write them there, an hour; NAME="first-run sessions acceptance ur ur-frames"
+figures: build ## make the numbers that README and the documents state, and write them there, an hour; NAME="first-run sessions acceptance bench ur ur-frames"
 	@python3 tools/figures.py $(NAME)
 
 pictures: build setup-test ## draw the pictures of the documents that show runs and pages, some minutes; NAME="report kitchen"

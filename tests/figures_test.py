@@ -72,6 +72,15 @@ class Made(unittest.TestCase):
         self.assertIn("| plant 2 | 72.00 | 72.00 | 72.00 | 72.00 | 72.00 | 72.00 |", made["sessions-by-plant"])
         self.assertIn("30 times the robot recovered", made["sessions-by-sequence"])
 
+    def test_the_table_of_scenes(self):
+        names = ("s1.awake.penetration_mm", "s1.awake.drift_mm", "s2.worst_penetration_mm", "s3.0.error_percent", "s3.22.error_percent", "s3.45.error_percent",
+                 "s4.error_percent", "s6b.completes", "s6b.peak_force_N")
+        results = [{"name": name, "value": 0.5 if name == "s3.22.error_percent" else 1.0} for name in names]
+        with mock.patch.object(figures, "run", return_value=json.dumps({"results": results})):
+            made = figures.bench(mock.Mock(snug="snug"))["bench"]
+        self.assertIn("| distance of a sliding box, at 0, 22.5 and 45 degrees | 1.0000 % off | 0.05 % |", made)
+        self.assertIn("| in, with 1 N |", made)
+
     def test_a_session_that_broke_off_makes_no_table(self):
         words = mock.Mock(snug="snug", folder=Path("rows"))
         with mock.patch.object(figures, "run", return_value=json.dumps({"rows": [row("1", 1, 70.0, failure="the plant was gone")]})), self.assertRaises(figures.CannotMake):
@@ -79,7 +88,7 @@ class Made(unittest.TestCase):
 
     def test_every_block_has_its_maker(self):
         named = {match[2] for path in figures.documents() for match in figures.BLOCK.finditer(path.read_text(encoding="utf-8"))}
-        self.assertEqual(named, {"first-run", "sessions", "sessions-by-sequence", "sessions-by-plant", "acceptance", "ur", "ur-frames"})
+        self.assertEqual(named, {"first-run", "sessions", "sessions-by-sequence", "sessions-by-plant", "acceptance", "bench", "ur", "ur-frames"})
 
     def test_a_name_that_is_none_is_refused(self):
         done = subprocess.run([sys.executable, ROOT / "tools" / "figures.py", "session"], capture_output=True, text=True, check=False)

@@ -6,7 +6,7 @@
   figures.py NAME ...        these
   figures.py --check NAME    nothing is written: exit code 1 where a document says something else
 
-Names: first-run, sessions, acceptance, ur, ur-frames. `acceptance` needs the demonstrator's own programs (--programs FOLDER). The same commit gives the same text on
+Names: first-run, sessions, acceptance, bench, ur, ur-frames. `acceptance` needs the demonstrator's own programs (--programs FOLDER). The same commit gives the same text on
 every machine; beneath each table stands the commit that last changed the program, and what it was made on."""
 import argparse
 import json
@@ -127,6 +127,19 @@ def acceptance(words):
     return {"acceptance": table + "\n\n" + origin("one run of each program")}
 
 
+def bench(words):
+    """How accurate the physics is on scenes with a known answer; speeds depend on the machine and are not among them."""
+    value = {row["name"]: row["value"] for row in json.loads(run([words.snug, "bench", "s", "--json"]))["results"]}
+    slides = max(value[f"s3.{heading}.error_percent"] for heading in (0, 22, 45))
+    rows = (
+        ("14 stacked boxes, 10 s, all awake: deepest overlap; drift", f"{value['s1.awake.penetration_mm']:.4f} mm; {value['s1.awake.drift_mm']:.4f} mm", "0.01 mm; 0.001 mm"),
+        ("12 boxes dropped at random, five seeds: deepest overlap", f"{value['s2.worst_penetration_mm']:.2f} mm", "1 mm"),
+        ("distance of a sliding box, at 0, 22.5 and 45 degrees", f"{slides:.4f} % off", "0.05 %"),
+        ("height of a rebound", f"{value['s4.error_percent']:.3f} % off", "0.5 %"),
+        ("tilted insertion into a gap that is 5 mm too narrow", f"{'in' if value['s6b.completes'] == 1 else 'not in'}, with {value['s6b.peak_force_N']:.0f} N", "70 N"))
+    return {"bench": "\n".join(["| scene | snug | target |", "|---|---|---|", *(f"| {' | '.join(cells)} |" for cells in rows), "", origin("`snug bench`")])}
+
+
 UR_PACK = ["--samples", "0", "--decision-time", "0.2"]
 UR_PLANTS = (1, 2, 3)
 
@@ -204,7 +217,7 @@ def ur_frames(words):
     return {"ur-frames": ur_table(words, ("camera", "frames"), (1, 2), SEQUENCES)}
 
 
-MAKERS = {"first-run": first_run, "sessions": sessions, "acceptance": acceptance, "ur": ur, "ur-frames": ur_frames}
+MAKERS = {"first-run": first_run, "sessions": sessions, "acceptance": acceptance, "bench": bench, "ur": ur, "ur-frames": ur_frames}
 
 
 # ---- documents
