@@ -87,7 +87,7 @@ class Scenes(unittest.TestCase):
         result = snug("simulate", self.scene(*bodies), "--json", "-o", self.folder / "run.h5")
         self.assertEqual(result.returncode, 1)
         data = json.loads(result.stdout)
-        self.assertIn("more pairs of bodies", data["failure"])
+        self.assertIn("too many pairs of bodies", data["failure"])
         self.assertEqual(len(data["bodies"]), 130)
         self.assertAlmostEqual(data["duration_s"], 0.1, delta=0.01)
 

@@ -28,12 +28,12 @@ constexpr const char* kExamples = R"(Examples:
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --program program.csv -o run.h5
   snug report run.h5 -o run.html
   snug simulate scenarios/drop.yaml --until 5 --json
-`snug VERB --help` tells the options of a verb. Data goes to stdout, messages to stderr.
+`snug VERB --help` lists the options of a verb. Data goes to stdout, messages to stderr.
 Exit codes:
   0  done; boxes that were not packed, with their reasons, are a result too
-  1  the run failed: an output could not be written, a simulation could not go on (a protective stop of the robot, also
-     on the way home; with --monte-carlo and in compare in any of the runs), pack or compare was interrupted, check or bench
-     said no
+  1  the run failed: snug could not write an output, a simulation could not continue (a protective stop of the robot, also
+     on its way home; with --monte-carlo and compare in any of the runs), pack or compare was interrupted, or check or
+     bench found a fault
   2  the input cannot be used, or an output cannot be written, is an input or is being written by another run)";
 
 /// Words become names in JSON and HDF5, which take UTF-8 only.

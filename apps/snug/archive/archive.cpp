@@ -99,11 +99,11 @@ void add_reading(const Verb& verb, const char* name, const char* description, co
 }
 
 constexpr const char* kArchiveConvertHelp =
-    R"(Each source of an archive becomes a table of its own, as each has a clock of its own. Into an archive: CSV of OptiTrack's Motive, of RTDE
+    R"(Each source of an archive becomes a separate table, since each has its own clock. Into an archive go CSV of OptiTrack's Motive, of RTDE
 (record.py, ur_rtde) and with the column names of mc_rtc, its flat binary logs (.flat), MCAP and bags of ROS (.mcap, .db3, .bag, a folder).
-Several files become one recording: each brings what no other has. Bags need readers of PyPI in a Python that SNUG_PYTHON names; what
-is missing, the message says. Of a bag with a robot: --tool tool0 --wrench /force_torque_sensor_broadcaster/wrench. What was left out or
-assumed is said on stderr (docs/formats.md#measurements-of-other-programs).
+Several files become one recording: each adds what the others lack. Bags need readers of PyPI in a Python that SNUG_PYTHON names; a
+message says what is missing. For a bag with a robot: --tool tool0 --wrench /force_torque_sensor_broadcaster/wrench. convert reports on stderr what it left out or
+assumed (docs/formats.md#measurements-of-other-programs).
 Examples:
   snug archive convert measured.h5 -o tables
   snug export run.h5 --format csv -o log.csv
@@ -112,35 +112,35 @@ Examples:
 
 void add_archive_convert(const Verb& verb) {
   const Verb part =
-      verb.part("convert", "an archive into tables, or measurements into an archive", kArchiveConvertHelp);
+      verb.part("convert", "convert an archive into tables, or measurements into an archive", kArchiveConvertHelp);
   ArchiveConvertOptions& options = part.runs(run_archive_convert);
   part.option("input", options.inputs, "FILE", "an archive, or measurements: .csv, .flat, .mcap, .db3, .bag, a folder")
       .required()
       .expected(1, 8);
   part.option("-o,--output", options.output, "FOLDER|FILE.h5", "folder for the tables (made if needed), or the archive")
       .required();
-  part.option("--name", options.name, "NAME", "of the recording that measurements become; else the file's name");
-  part.option("--note", options.note, "TEXT", "what to remark about that recording");
+  part.option("--name", options.name, "NAME",
+              "name of the recording made from measurements (default: the name of the file)");
+  part.option("--note", options.note, "TEXT", "remark on that recording");
   part.option("--sequence", options.sequence, "NAME", "item sequence of that recording");
-  part.option("--rename", options.renames, "OLD=NEW",
-              "a body as the file calls it, and as the archive does: Box013, Base005")
+  part.option("--rename", options.renames, "OLD=NEW", "rename a body of the file for the archive: Box013, Base005")
       .one_each();
-  part.option("--up", options.up, "AXIS", "of motion capture by Motive: y, its usual axes, turned to z up; or z",
+  part.option("--up", options.up, "AXIS", "vertical axis in files of Motive: y, its usual one, is turned to z; or z",
               one_of({"y", "z"}));
-  part.option("--tool", options.hints.tool, "TOPIC|FRAME", "of a bag: the poses that are the tool's");
+  part.option("--tool", options.hints.tool, "TOPIC|FRAME", "in a bag: topic or frame with the poses of the tool");
   part.option("--wrench", options.hints.wrench, "NAME",
-              "the force sensor: topic of a bag, sensor of a flat log, columns of RTDE (ft_raw_wrench)");
-  part.flag("--turn-wrench", options.hints.turns_wrench, "forces are of the robot on the load: all signs turn");
-  part.option("--joint", options.hints.joints, "NAME", "of a bag: joints from base to tool, one each").one_each();
-  part.option("--fixed-frame", options.hints.fixed_frame, "NAME",
-              "of a bag: the frame of /tf that poses are wanted in");
+              "force sensor: topic of a bag, sensor of a flat log, columns of RTDE (ft_raw_wrench)");
+  part.flag("--turn-wrench", options.hints.turns_wrench, "forces act from the robot on the load: change all signs");
+  part.option("--joint", options.hints.joints, "NAME", "in a bag: joints from base to tool, one each").one_each();
+  part.option("--fixed-frame", options.hints.fixed_frame, "NAME", "in a bag: the frame of /tf in which to give poses");
 }
 
 void add_merge(const Verb& verb) {
   const Verb part = verb.part(
-      "merge", "several archives into one: the repetitions of a sequence",
-      "Recordings keep their names and remarks. Two of one name, of two sequences, or with another mass or size of "
-      "the\nsame body are refused.\nExamples:\n  snug measure run.h5 --sensors scenarios/sensors/demonstrator.yaml -o "
+      "merge", "merge several archives into one: the repetitions of a sequence",
+      "Recordings keep their names and remarks. merge refuses two recordings of one name, recordings of different "
+      "sequences,\nand another mass or size of the same body.\nExamples:\n  snug measure run.h5 --sensors "
+      "scenarios/sensors/demonstrator.yaml -o "
       "first.h5\n  snug measure again.h5 --sensors scenarios/sensors/demonstrator.yaml --date 20000102T000000Z -o "
       "second.h5\n  snug archive merge first.h5 second.h5 -o sequence-1.h5");
   ArchiveMergeOptions& options = part.runs(run_archive_merge);
@@ -151,10 +151,11 @@ void add_merge(const Verb& verb) {
 }  // namespace
 
 void add_archive(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "archive", "archives of measurements: what is in them, are they whole");
-  add_reading(verb, "list", "recordings, sources, bodies and how much of them was tracked",
+  const Verb verb(app, action, "archive", "list, check, convert and merge archives of measurements");
+  add_reading(verb, "list", "list recordings, sources, bodies and how much of each was tracked",
               "Example:\n  snug archive list measured.h5 --json", run_archive_list);
-  add_reading(verb, "check", "read everything; tell each defect with its path and index; exit code 2 if there is one",
+  add_reading(verb, "check",
+              "read everything and report each defect with its path and index; exit code 2 if there is one",
               "Example:\n  snug archive check measured.h5", run_archive_check);
   add_archive_convert(verb);
   add_merge(verb);

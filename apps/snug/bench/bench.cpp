@@ -70,12 +70,12 @@ int run_bench(const BenchOptions& options) {
 
 void add_bench(CLI::App& app, Action& action) {
   const Verb verb(
-      app, action, "bench", "measure speed and accuracy, beside their targets",
+      app, action, "bench", "measure speed and accuracy and compare them with their targets",
       "Examples:\n  snug bench\n  snug bench --json --only s1\n  snug bench camera\n  snug bench --only packing\n  "
       "snug bench --only identification\n  snug bench piles\n  snug bench heaps.3000\n  snug bench drops --drops 1000");
   BenchOptions& options = verb.runs(run_bench);
   add_json(verb, options.json);
-  verb.option("--only", options.only, "NAME", "only figures whose name starts so, such as s3");
+  verb.option("--only", options.only, "NAME", "only figures whose name starts with this, such as s3");
   verb.option("figures", options.only, "NAME", "the same as --only").excludes({"--only"});
   verb.option("--drops", options.drops, "N", "random drops to run for the figures drops.*; a thousand take minutes",
               whole(4, kMostThings));

@@ -23,8 +23,8 @@ void add_arm_options(const Verb& part, CalibrateOptions& options, const char* ou
 
 void add_calibrate(CLI::App& app, Action& action) {
   const Verb verb(
-      app, action, "calibrate", "identify the arm, its tool, its sensor or a camera from measurements",
-      "`snug calibrate kinematics --help` and so on tell the files and units; docs/calibration.md the rest.");
+      app, action, "calibrate", "calibrate the arm, its tool, its sensor or a camera from measurements",
+      "`snug calibrate kinematics --help` and so on describe the files and units; docs/calibration.md has the rest.");
   add_calibrate_kinematics(verb);
   add_calibrate_tool(verb);
   add_calibrate_sensor(verb);

@@ -29,7 +29,7 @@ int run_calibrate_camera(const CalibrateCameraOptions& options) {
 constexpr const char* kCameraPosesHelp =
     R"(The CSV has a header x,y,z,rx,ry,rz,cx,cy,cz,crx,cry,crz: pose of the tool in the world, and pose in the camera of what the
 tool holds: a board, or a box that `snug perceive` measured (m; rotation vectors in rad). Four rows or more, the tool turned about two
-axes at least. What is held need not be known where it sits: that is found too.
+axes at least. The pose of the held object in the tool may be unknown: camera finds it too.
 Examples:
   snug calibrate camera scenarios/examples/board.csv
   snug calibrate camera scenarios/examples/board.csv --name tote -o camera.yaml --json)";
@@ -37,11 +37,11 @@ Examples:
 }  // namespace
 
 void add_calibrate_camera(const Verb& verb) {
-  const Verb part = verb.part("camera", "where a camera is that stands in the cell (hand-eye)", kCameraPosesHelp);
+  const Verb part = verb.part("camera", "find where a camera of the cell is (hand-eye calibration)", kCameraPosesHelp);
   CalibrateCameraOptions& options = part.runs(run_calibrate_camera);
-  part.option("poses", options.input, "FILE.csv", "of the tool, and of what it holds as the camera sees it").required();
-  part.option("--name", options.name, "NAME", "of the camera in what is written");
-  part.option("--preset", options.preset, "NAME", "kind of camera in what is written: its noise and range",
+  part.option("poses", options.input, "FILE.csv", "poses of the tool and of what it holds").required();
+  part.option("--name", options.name, "NAME", "name of the camera in the output");
+  part.option("--preset", options.preset, "NAME", "kind of camera in the output: its noise and range",
               one_of({"structured_light", "active_stereo", "ideal"}));
   part.option("-o,--output", options.output, "FILE.yaml", "block for a scenario: pose and hand-eye error");
   add_json(part, options.json);

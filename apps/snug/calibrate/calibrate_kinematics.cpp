@@ -87,16 +87,16 @@ Examples:
 }  // namespace
 
 void add_calibrate_kinematics(const Verb& verb) {
-  const Verb part = verb.part("kinematics", "the geometry of the arm", kKinematicsHelp);
+  const Verb part = verb.part("kinematics", "calibrate the geometry of the arm", kKinematicsHelp);
   CalibrateKinematicsOptions& options = part.runs(run_calibrate_kinematics);
   part.option("--deltas", options.deltas, "FILE.conf",
               "calibration.conf of a UR controller: deviations of the DH parameters");
   part.option("--yaml", options.yaml, "FILE.yaml", "calibration file of a driver: origins of the six joints");
   part.option("--poses", options.poses, "FILE.csv", "joints and measured poses");
-  part.option("--base", options.base, "LINK", "link in whose frame poses were measured");
+  part.option("--base", options.base, "LINK", "link in whose frame the poses were measured");
   part.option("--end", options.end, "LINK", "link whose poses were measured");
   part.option("--angles", options.angles, "NAME",
-              "how roll, pitch, yaw of YAML files are meant: urdf (fixed axes) or euler-xyz (moving axes, as "
+              "meaning of roll, pitch, yaw in YAML files: urdf (fixed axes) or euler-xyz (moving axes, as "
               "ur_calibration writes them)",
               one_of({"urdf", "euler-xyz"}));
   part.option("--write-yaml", options.yaml_output, "FILE.yaml", "the joint origins for a driver");

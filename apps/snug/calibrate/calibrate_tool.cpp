@@ -81,7 +81,7 @@ Examples:
 constexpr const char* kSensorHelp =
     R"(The CSV has a header rx,ry,rz,fx,fy,fz,tx,ty,tz: orientation of the sensor's frame in the world (rotation vector, rad)
 and its reading at rest (N, Nm; a hanging load pulls along gravity). Four or more orientations, each axis up and down.
-Only ratios of mass and scales show: without --mass the scales have the geometric mean 1.
+The readings determine only ratios of mass and scales: without --mass the scales have the geometric mean 1.
 Examples:
   snug calibrate ft scenarios/examples/readings.csv
   snug calibrate ft scenarios/examples/readings.csv --mass 1.02 -o ur10-weighed.urdf --json)";
@@ -89,22 +89,22 @@ Examples:
 }  // namespace
 
 void add_calibrate_tool(const Verb& verb) {
-  const Verb part = verb.part("tool", "where the tip of the tool is", kToolHelp);
+  const Verb part = verb.part("tool", "find where the tip of the tool is", kToolHelp);
   CalibrateToolOptions& options = part.runs(run_calibrate_tool);
   part.option("touches", options.input, "FILE.csv", "poses of the flange").required();
   part.option("--flange", options.flange, "LINK", "link whose poses are given");
   part.option("--tip-in-tool", options.tip_in_tool, "X Y Z",
-              "where the tip is in the tool's frame, when a cone is mounted there")
+              "place of the tip in the tool's frame, if a cone is mounted there")
       .expected(3);
   add_arm_options(part, options, "the arm with its tool frame moved to the tip");
 }
 
 void add_calibrate_sensor(const Verb& verb) {
-  const Verb part = verb.part("ft", "offsets and scales of the force/torque sensor, and its load", kSensorHelp);
+  const Verb part = verb.part("ft", "calibrate the force/torque sensor and its load", kSensorHelp);
   CalibrateSensorOptions& options = part.runs(run_calibrate_sensor);
   part.option("readings", options.input, "FILE.csv", "readings at rest").required();
-  part.option("--mass", options.mass, "KG", "of the load, when it was weighed", positive());
-  part.option("--sensor", options.sensor, "LINK", "link in whose frame is measured");
+  part.option("--mass", options.mass, "KG", "mass of the load, if it was weighed", positive());
+  part.option("--sensor", options.sensor, "LINK", "link in whose frame the sensor measures");
   add_arm_options(part, options, "the arm with this load behind the sensor");
 }
 

@@ -154,39 +154,38 @@ constexpr const char* kCameraExamples = R"(What is written goes by the ending of
   .png  depth, 16-bit grey in steps of 0.1 mm; beside it FILE-intensity.png, FILE-labels.png and FILE-truth.json
   .ply  points in the world with intensity, row, column and label; beside it FILE-truth.json
   .h5   depth, intensity, and the truth: depth, labels, poses
-The truth is what nobody measures: poses and labels of the bodies, and where the camera really is. docs/camera.md has the errors.
+The truth cannot be measured: poses and labels of the bodies, and the real pose of the camera. docs/camera.md has the errors.
 Examples:
   snug camera run.h5 --time 20 -o frame.png
   snug camera run.h5 --time 20 --camera tote --seed 3 --shot 2 -o frame.h5
   snug camera run.h5 --scenario scenarios/box-demonstrator.yaml -o frame.ply   # with the cameras of another scenario
-With --click ADDRESS, and a scenario instead of a recording, the cell is one that `snug serve` serves now: the camera of a simulated cell, as a
-program of its own (docs/camera.md).)";
+With --click ADDRESS, and a scenario instead of a recording, camera renders a cell that `snug serve` serves now: the camera of a simulated cell
+as a separate program (docs/camera.md).)";
 
 }  // namespace
 
 void add_camera(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "camera", "what a depth camera of the cell sees at an instant of a recording, or now",
+  const Verb verb(app, action, "camera", "render what a depth camera sees, from a recording or a served cell",
                   kCameraExamples);
   CameraOptions& options = verb.runs(run_camera);
   verb.option("recording", options.recording, "FILE.h5|SCENARIO.yaml",
-              "of a run; with --click the scenario that is served")
+              "recording of a run; with --click the scenario that is served")
       .required();
   verb.option("-o,--output", options.output, "FILE", "the frame to write: .png, .ply or .h5").required();
-  const OptionRow time = verb.option("--time", options.time, "SECONDS", "of the instant; without it the end", finite());
-  const OptionRow click = verb.option("--click", options.click, "ADDRESS",
-                                      "look at the cell that is served at this address, beside its controller")
-                              .excludes(time);
-  verb.option("--sequence", options.sequence, "NAME", "of a served cell; without it the first").needs(click);
+  const OptionRow time = verb.option("--time", options.time, "SECONDS", "instant (default: the end)", finite());
+  const OptionRow click =
+      verb.option("--click", options.click, "ADDRESS", "look at the cell that is served at this address")
+          .excludes(time);
+  verb.option("--sequence", options.sequence, "NAME", "sequence of a served cell (default: the first)").needs(click);
   add_scenario_changes(verb, options.changes);
   for (const OptionRow& row : add_client(verb, options.client, "--timeout")) row.needs(click);
-  verb.flag("--without-robot", options.without_robot, "of a served cell: the robot is out of the view").needs(click);
-  verb.option("--camera", options.camera, "NAME", "name in the scenario; without it the first");
-  verb.option("--scenario", options.scenario, "FILE.yaml", "with the camera, where the recording's own has none")
+  verb.flag("--without-robot", options.without_robot, "with a served cell: hide the robot").needs(click);
+  verb.option("--camera", options.camera, "NAME", "name in the scenario (default: the first)");
+  verb.option("--scenario", options.scenario, "FILE.yaml", "scenario with the camera, if the recording has none")
       .excludes(click);
-  verb.option("--seed", options.seed, "N", "of the errors that stay with a camera; without it the recording's",
-              whole(0));
-  verb.option("--shot", options.shot, "N", "number of the frame: its noise", whole(0));
-  verb.option("--threads", options.threads, "N", "at work; the frame does not depend on it", whole(1, kMostThreads));
+  verb.option("--seed", options.seed, "N", "seed of the camera's constant errors (default: the recording's)", whole(0));
+  verb.option("--shot", options.shot, "N", "number of the frame, which draws its noise", whole(0));
+  verb.option("--threads", options.threads, "N", "threads; they do not change the frame", whole(1, kMostThreads));
   verb.flag("--exact", options.exact, "without errors");
   add_json(verb, options.json);
 }

@@ -80,36 +80,36 @@ int run_cell_place(const CellPlaceOptions& options) {
 }
 
 constexpr const char* kPlaceHelp =
-    R"(Looks for places of the robot's base and of the aligner from which the tool, pointing down, reaches what packing needs:
-the container from its floor to over its rim, and the picks, also with the tool turned by a quarter. Places are found by
-the reach of the arm alone; the best, a dozen or more, are looked at pose by pose, with all that stands in the cell. -o writes the
-best: base, aligner, start and posture are changed, comments and everything else stay. Container and bodies stay where
-they are, but for those --with names. Exit code 1: no place reaches everything.
+    R"(place searches places of the robot's base and of the aligner from which the tool, pointing down, reaches what packing needs:
+the container from its floor to above its rim, and the picks, also with the tool turned by a quarter. It finds places by the
+reach of the arm alone, then tests the best, a dozen or more, pose by pose with everything that stands in the cell. -o writes the
+best one: it changes base, aligner, start and posture, and keeps comments and everything else. Container and bodies stay,
+except the bodies that --with names. Exit code 1: no place reaches everything.
 Examples:
   snug cell place scenarios/init/ur.yaml --with plinth --page places.html
   snug cell place scenarios/init/ur.yaml --keep height --json
   snug cell place scenarios/init/cell.yaml --arm scenarios/robots/ur5e.urdf --tool-link E --page places.html
-With --arm the cell gets another robot first: the URDF as its maker publishes it, the gripper of the scenario on the link.)";
+--arm first puts another robot into the cell: the URDF as its maker publishes it, with the gripper of the scenario on the link.)";
 
 }  // namespace
 
 void add_cell(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "cell", "find places for what stands in a cell");
-  const Verb part = verb.part("place", "where robot and aligner can stand", kPlaceHelp);
+  const Verb verb(app, action, "cell", "find where robot and aligner of a cell can stand");
+  const Verb part = verb.part("place", "find where robot and aligner can stand", kPlaceHelp);
   CellPlaceOptions& options = part.runs(run_cell_place);
   part.option("scenario", options.scenario, "SCENARIO.yaml", "scenario file, or name of one that comes with snug")
       .required();
-  part.option("--arm", options.arm, "FILE.urdf", "the arm that is to stand there, in the place of the scenario's");
+  part.option("--arm", options.arm, "FILE.urdf", "arm to put into the cell, instead of the scenario's");
   part.option("--tool-link", options.tool_link, "NAME",
-              "link of that arm that carries the gripper (default: tool0 and the like, else the last)");
-  part.option("--keep", options.keep, "NAME", "what stays where it is; may be given several times",
+              "link of that arm that carries the gripper (default: tool0 or a similar name, else the last link)");
+  part.option("--keep", options.keep, "NAME", "what does not move; may be given several times",
               one_of({"robot", "height", "aligner"}))
       .one_each();
   part.option("--with", options.with, "BODY", "a static body that moves with the base; may be given several times")
       .one_each();
   part.option("-o,--output", options.output, "FILE.yaml",
-              "the scenario with the best place, in the folder of the other");
-  part.option("--page", options.page, "FILE.html", "a page with the places and a map of the best");
+              "write the scenario with the best place, into the folder of the other");
+  part.option("--page", options.page, "FILE.html", "write a page with the places and a map of the best");
   add_json(part, options.json);
 }
 

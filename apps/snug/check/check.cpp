@@ -64,14 +64,14 @@ int run_check(const CheckOptions& options) {
 }
 
 constexpr const char* kCheckExamples =
-    R"(Moves the arm with its controller and limits, as a run does, but with nothing to touch, and checks the whole path:
-reach, joint limits and speeds, singularities, the arm's own links, and links, gripper, cup and held box against
-everything that stands in the cell. Nothing is felt: waypoints of a fast program go to their end; exact is how exported programs are done.
-Margins of collisions are distances, negative inside; what cup and held box may be inside is said beside them. Waypoints
-with one finding stand in one line. Exit code 0: nothing in the way; 1: something is; 2: the input cannot be used.
-With --reach: poses of a grid over the container and those of the picks, each by the same tests; a pose is reached where
-one branch of the arm's inverse passes them, paths are not checked. Exit code 1: a pick is not reached, or no place over
-the container.
+    R"(check moves the arm with its controller and limits as a run does, but without contact, and tests the whole path: reach,
+joint limits and speeds, singularities, collisions between links, and of links, gripper, cup and held box with everything
+that stands in the cell. No sensor ends a motion: waypoints of a fast program go to their end. Exported programs move as with exact.
+Collision margins are distances, negative inside; the allowed depth of cup and held box is printed beside them. Waypoints
+with the same finding share one line. Exit code 0: nothing is in the way; 1: something is; 2: the input cannot be used.
+With --reach, check tests poses of a grid over the container and those of the picks in the same way. The tool reaches a
+pose if one branch of the arm's inverse passes; paths are not tested. Exit code 1: the tool does not reach a pick, or no
+place over the container.
 Examples:
   snug check scenarios/box-demonstrator.yaml --program program.csv --sequence 1
   snug check scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --controller exact --json
@@ -81,18 +81,18 @@ Examples:
 }  // namespace
 
 void add_check(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "check", "say whether the robot can do a program, and what is in the way",
+  const Verb verb(app, action, "check", "check whether the robot can execute a program, and what is in its way",
                   kCheckExamples);
   CheckOptions& options = verb.runs(run_check);
   add_robot_scenario(verb, options.scenario);
   add_scenario_changes(verb, options.changes);
   const OptionRow program = verb.option("--program", options.program, "FILE.csv", "waypoint file (13 columns)");
   verb.flag("--reach", options.maps_reach,
-            "instead of a program: where over the container and at the picks the tool can "
-            "stand, pointing down, and what keeps it from the other places; nothing is moved")
+            "instead of a program: map where the tool can stand, pointing down, over the container and at the picks, "
+            "and what keeps it from the other places")
       .excludes(program);
-  verb.option("--sequence", options.sequence, "NAME", "item sequence, to check the held boxes too");
-  verb.option("--robot", options.robot, "NAME", "the scenario's robot; absent: the one there is");
+  verb.option("--sequence", options.sequence, "NAME", "item sequence, to check the held boxes as well");
+  verb.option("--robot", options.robot, "NAME", "name of the scenario's robot (default: its only one)");
   add_motion_words(verb, options.motion);
   add_corrections(verb, options.corrections);
   add_json(verb, options.json);

@@ -10,13 +10,13 @@ namespace snug::app {
 void add_scenario_changes(const Verb& verb, ScenarioChanges& changes) {
   verb.option("--items", changes.items, "FILE", "more boxes and sequences: orders (.csv, .json) or items (.yaml)");
   const OptionRow container = verb.option("--container", changes.container, "NAME|LxWxH",
-                                          "what is packed: another container of the scenario, or an open box of these "
-                                          "inner sizes in mm in the place of its target");
+                                          "container to pack: another one of the scenario, or an open box of these "
+                                          "inner sizes in mm in place of the target");
   verb.option("--pallet", changes.pallet, "LxW[xH]",
-              "pack a slab without walls, sizes in mm, boxes up to H high (default: the depth of the target)")
+              "pack a pallet of these sizes in mm, boxes up to H high (default: the depth of the target)")
       .excludes(container);
   verb.option("--set", changes.set, "KEY=VALUE",
-              "a key of the scenario file with another value, such as cup.lip_radius=0.03 or "
+              "set a key of the scenario to another value, such as cup.lip_radius=0.03 or "
               "contacts.pairs.box/container.friction=0.1; may be given several times")
       .one_each();
 }

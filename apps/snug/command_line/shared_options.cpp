@@ -22,7 +22,7 @@ void add_robot_scenario(const Verb& verb, std::string& scenario) {
 }
 
 void add_threads(const Verb& verb, std::optional<int>& threads) {
-  verb.option("--threads", threads, "N", "threads; the result does not depend on it (default: all cores)",
+  verb.option("--threads", threads, "N", "threads; they do not change the result (default: all)",
               whole(1, kMostThreads));
 }
 
@@ -37,22 +37,21 @@ std::string layer_of(const std::string& corrections) { return corrections == "no
 
 std::array<OptionRow, 2> add_client(const Verb& verb, std::optional<std::string>& keys, double& patience,
                                     const char* timeout) {
-  return {
-      verb.option("--keys", keys, "DIR",
-                  "keys by which this program is known there, and knows whom it meets (`snug keys`): a folder, or a "
-                  "file NAME.key_secret in it"),
-      verb.option(timeout, patience, "SECONDS", "how long to wait for an answer from there", within(0.01, 1e5))};
+  return {verb.option("--keys", keys, "DIR",
+                      "keys with which this program and the server identify each other (`snug keys`): a folder, or a "
+                      "file NAME.key_secret in it"),
+          verb.option(timeout, patience, "SECONDS", "how long to wait for an answer", within(0.01, 1e5))};
 }
 
 void add_physics(const Verb& verb, PhysicsWords& physics) {
-  verb.option("--dt", physics.dt, "SECONDS", "time step, instead of the scenario's", within(1e-6, 0.1));
+  verb.option("--dt", physics.dt, "SECONDS", "time step (default: the scenario's)", within(1e-6, 0.1));
   verb.option("--cup", physics.cup, "MODEL",
-              "phases: pressure builds up and decays, holds can fail; holding: attached and released at once (default: "
-              "phases, with --corrections the cup that they were made for)",
+              "phases: pressure builds up and decays, and holds can fail; holding: the cup attaches and releases at "
+              "once (default: phases; with --corrections the cup for which they were made)",
               one_of({"holding", "phases"}));
-  verb.option("--seed", physics.seed, "N", "seed of everything random, instead of the scenario's", whole(0));
+  verb.option("--seed", physics.seed, "N", "seed of all random draws (default: the scenario's)", whole(0));
   verb.option("--record-period", physics.record_period, "SECONDS",
-              "time between frames, instead of the scenario's or 0.008; whole steps, with a program whole ticks",
+              "time between frames: whole steps, or ticks of a program (default: the scenario's, or 0.008)",
               positive());
 }
 
@@ -65,11 +64,11 @@ void apply(const PhysicsWords& physics, model::Scenario& scenario) {
 
 void add_motion_words(const Verb& verb, MotionWords& words) {
   verb.option("--controller", words.controller, "KIND",
-              "lagged: the demonstrator's timing and lag; exact: on the reference; fast: bounded jerk, blends, "
-              "waypoints in contact and waits end by what is felt, as pack does (default: as the program was packed)",
+              "lagged: the demonstrator's timing and lag; exact: no lag; fast: bounded jerk, blended motions, sensors "
+              "end pushes and waits, as in pack (default: as the program was packed)",
               one_of({"lagged", "exact", "fast"}));
   verb.option("--tempo", words.tempo, "FRACTION",
-              "fraction of the speeds, with fast (default: that the program was packed with, or 1)", within(0.5, 1.0));
+              "fraction of the full speed, with fast (default: that of the program, or 1)", within(0.5, 1.0));
 }
 
 void refuse_tempo_without_fast(const std::optional<double>& tempo, const std::string& controller) {

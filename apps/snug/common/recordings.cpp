@@ -13,20 +13,20 @@
 namespace snug::app {
 
 void add_selection(const Verb& verb, replay::Selection& selection) {
-  verb.option("--from", selection.from, "SECONDS", "leave out what was before this time", finite());
-  verb.option("--to", selection.to, "SECONDS", "leave out what was after this time", finite());
+  verb.option("--from", selection.from, "SECONDS", "leave out everything before this time", finite());
+  verb.option("--to", selection.to, "SECONDS", "leave out everything after this time", finite());
   verb.option("--every", selection.every, "N",
-              "take every Nth frame only (default: all; in a page as many as it can hold)", whole(1, kMostThings));
+              "use only every Nth frame (default: all; in a page as many as it can hold)", whole(1, kMostThings));
 }
 
 void add_urdf(const Verb& verb, std::optional<std::string>& urdf) {
-  verb.option("--urdf", urdf, "FILE.urdf", "how the robot in it looks (default: the file that its scenario names)");
+  verb.option("--urdf", urdf, "FILE.urdf", "looks of the robot (default: the file that the scenario names)");
 }
 
 void expect_one_or_two(const std::vector<std::string>& recordings) {
   if (recordings.size() <= 2) return;
   throw InputError("command line", "recordings", std::to_string(recordings.size()) + " of them",
-                   "one, or one and another to lay over it");
+                   "one, or two to overlay");
 }
 
 void expect_recorded(const record::RecordingReader& reader, const std::string& path,
@@ -54,7 +54,7 @@ replay::RobotDescription find_robot(const record::RecordingReader& reader, const
     } catch (const InputError&) {  // some other file of that name
     }
   }
-  std::fprintf(stderr, "snug: the robot is drawn from the shapes that touch: %s is not here; --urdf names it\n",
+  std::fprintf(stderr, "snug: the robot is drawn from its collision shapes: %s is missing; --urdf names it\n",
                name.c_str());
   return {};
 }

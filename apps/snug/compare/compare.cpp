@@ -101,11 +101,11 @@ int say_end(const std::vector<study::SessionRow>& rows, std::size_t sessions, st
   const auto failed = std::ranges::count_if(rows, [](const study::SessionRow& row) { return !row.failure.empty(); });
   if (is_interrupted()) std::fprintf(stderr, "snug: interrupted after %zu of %zu sessions\n", rows.size(), sessions);
   if (failed > 0) {
-    std::fprintf(stderr, "snug: failed: %d of %zu sessions did not reach their end\n", static_cast<int>(failed),
-                 rows.size());
+    std::fprintf(stderr, "snug: failed: %d of %zu sessions did not finish\n", static_cast<int>(failed), rows.size());
   }
   if (left_out > 0) {
-    std::fprintf(stderr, "snug: failed: %llu sessions were left out: their processes were killed, or others do them\n",
+    std::fprintf(stderr,
+                 "snug: failed: %llu sessions are missing: their processes were killed, or other processes run them\n",
                  static_cast<unsigned long long>(left_out));
   }
   return failed == 0 && left_out == 0 && !is_interrupted() ? kSuccess : kRunFailed;
@@ -209,32 +209,32 @@ constexpr const char* kCompareExamples = R"(Examples:
 }  // namespace
 
 void add_compare(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "compare", "agents x sequences x plants: filling, items lost, recoveries",
+  const Verb verb(app, action, "compare", "compare agents over sequences and plants: filling, losses, recoveries",
                   kCompareExamples);
   CompareOptions& options = verb.runs(run_compare);
   add_scenario(verb, options.pack.scenario);
   verb.option("--sequences", options.choice.sequences, "NAMES",
               "all, or names separated by commas (default: all; with --random none but the random ones)");
   const OptionRow random = verb.option("--random", options.choice.random, "N",
-                                       "so many more sequences, random-1, ...: every box of the scenario in random "
-                                       "order; each is packed in plants of its own",
+                                       "number of additional sequences random-1, ...: every box of the scenario in "
+                                       "random order, each packed in plants of its own",
                                        whole(1, 10000));
   verb.option("--random-seed", options.choice.random_seed, "N", "seed of their order", whole(0)).needs(random);
   verb.option("--agents", options.choice.agents, "NAMES",
-              "all built-in ones, or names separated by commas, module:Class of Python among them");
+              "all built-in ones, or names separated by commas; module:Class names one in Python");
   verb.option("--plants", options.choice.plants, "N",
-              "plants that every agent packs with every sequence: the seed --plant-seed and those after it",
+              "number of plants that every agent packs with every sequence: the seed --plant-seed and those after it",
               whole(1, kMostRuns));
   add_packing_options(verb, options.pack);
   const OptionRow json = verb.flag("--json", options.json, "print rows as JSON");
   verb.flag("--csv", options.csv, "print rows as CSV").excludes(json);
   verb.option("-o,--output", options.page, "FILE.html",
-              "page: charts by agent, sequence and plant, each container from above, the words that repeat each run");
+              "write a page: charts by agent, sequence and plant, each container, the command of each run");
   verb.option("--runs", options.choice.recordings, "DIR",
-              "leave a recording and its report page of every session in this folder; the page of -o links to them");
+              "write a recording and a report page of every session into this folder; the page of -o links to them");
   verb.option("--dir", options.dir, "DIR",
-              "keep every row in this folder: the same words go on after a kill; DIR/study.yaml is the comparison as a "
-              "study (snug study status|merge|report)");
+              "keep every row in this folder, so that the same command continues after a kill; DIR/study.yaml is the "
+              "comparison as a study (snug study status|merge|report)");
 }
 
 }  // namespace snug::app

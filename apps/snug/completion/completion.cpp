@@ -29,7 +29,7 @@ int print_completion(const CompletionOptions& options) {
 }  // namespace
 
 void add_completion(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "completion", "print what lets a shell complete the words of snug", kCompletionHelp);
+  const Verb verb(app, action, "completion", "print the completion script for a shell", kCompletionHelp);
   CompletionOptions& options = verb.runs(print_completion);
   verb.option("shell", options.shell, "SHELL", "bash, zsh or fish", one_of({"bash", "zsh", "fish"})).required();
   options.app = &app;

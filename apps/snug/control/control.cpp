@@ -71,24 +71,24 @@ int run_control(const ControlOptions& options) {
 constexpr const char* kControlExamples = R"(Examples:
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --sequence 1      # in another terminal
   snug control program.csv --click tcp://127.0.0.1:5555 --sequence 1
-With the corrections of a site: --corrections seq1. With a simulator that names things as the demonstrator's does:
+--corrections seq1 applies the corrections of a site. A simulator with the names of the demonstrator's needs
 --object ur10_FTSensor_sr_gripper --vacuum-event gripper.)";
 
 }  // namespace
 
 void add_control(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "control", "do a program with a CLICK simulator in another program", kControlExamples);
+  const Verb verb(app, action, "control", "execute a program on a CLICK simulator", kControlExamples);
   ControlOptions& options = verb.runs(run_control);
   verb.option("program", options.program, "FILE.csv", "waypoint file (13 columns)").required();
-  verb.option("--click", options.endpoint, "ADDRESS", "where the simulator is: tcp://HOST:PORT or ipc://PATH");
-  verb.option("--scenario", options.scenario, "SCENARIO.yaml", "what the controller knows: arm, limits, gains, boxes");
+  verb.option("--click", options.endpoint, "ADDRESS", "address of the simulator: tcp://HOST:PORT or ipc://PATH");
+  verb.option("--scenario", options.scenario, "SCENARIO.yaml", "scenario of the controller: arm, limits, gains, boxes");
   verb.option("--sequence", options.sequence, "NAME",
-              "item sequence that the program packs: its boxes are brought, where the simulator has events for that");
-  verb.option("--robot", options.robot, "NAME", "robot of the scenario; absent: the one there is");
+              "item sequence that the program packs; its boxes are brought if the simulator has events for that");
+  verb.option("--robot", options.robot, "NAME", "robot of the scenario (default: its only one)");
   add_motion_words(verb, options.motion);
   add_corrections(verb, options.corrections);
   verb.option("--object", options.object, "NAME",
-              "the simulator's object that is driven; absent: the one with the joints");
+              "object of the simulator to drive (default: the one with the joints)");
   verb.option("--vacuum-event", options.vacuum_event, "NAME", "name of the event that switches the vacuum");
   verb.option("--blow-off-event", options.blow_off_event, "NAME", "name of the event that switches the blow-off");
   add_client(verb, options.client, "--timeout");

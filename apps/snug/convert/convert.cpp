@@ -33,9 +33,9 @@ int run_convert(const ConvertOptions& options) {
 
 constexpr const char* kConvertHelp =
     R"(Reads MJCF (MuJoCo) and SDF (Gazebo): boxes, balls, capsules, cylinders, ellipsoids, planes and meshes as convex hulls, with mass, centre and
-inertia, friction, restitution, gravity and time step. Free bodies move, all others stand; joints are held where they are. Whatever is left
-out, or taken otherwise than there, is said on stderr with its lines (docs/scenes.md). Models that would have to be downloaded are left out.
-Exit code 1: the scenario is written, but `snug simulate` refuses it for the reason that is said, such as bodies that begin in each other.
+inertia, friction, restitution, gravity and time step. Free bodies move, all others are fixed; joints keep their positions. convert reports on stderr, with line
+numbers, what it leaves out or changes (docs/scenes.md). It does not download models.
+Exit code 1: the scenario is written, but `snug simulate` refuses it for the printed reason, such as bodies that overlap at the start.
 Examples:
   snug convert scenarios/examples/scene.xml -o scene.yaml
   snug simulate scene.yaml -o run.h5
@@ -44,7 +44,7 @@ Examples:
 }  // namespace
 
 void add_convert(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "convert", "a scene of MuJoCo or Gazebo into a scenario", kConvertHelp);
+  const Verb verb(app, action, "convert", "convert a scene of MuJoCo or Gazebo into a scenario", kConvertHelp);
   ConvertOptions& options = verb.runs(run_convert);
   verb.option("scene", options.scene, "SCENE.xml|SCENE.sdf", "MJCF or SDF, by its root element").required();
   verb.option("-o,--output", options.output, "FILE.yaml", "the scenario").required();

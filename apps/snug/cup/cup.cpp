@@ -91,8 +91,8 @@ Example:
   snug cup settle scenarios/examples/loads.jsonl)";
 
 constexpr const char* kEstimateHelp =
-    R"(Prints `cup` and `uncertainty` of a scenario, with the range of each number and where it comes from: an estimate to start
-with. What holds and how the box tilts depends on it, filling hardly. Measure first what `snug identify` says is unknown.
+    R"(estimate prints the blocks `cup` and `uncertainty` of a scenario, with the range and source of each number. Holds and tilt of
+boxes depend on these numbers, filling hardly. Measure first what `snug identify` calls unknown.
 Example:
   snug cup estimate --diameter 40 --bellows 1.5 --material silicone --lip foam --vacuum -60kPa --mass-max 5)";
 
@@ -104,33 +104,33 @@ void add_questions(const Verb& verb, const char* name, const char* about, const 
 }
 
 void add_cup_estimate(const Verb& verb) {
-  const Verb part = verb.part("estimate", "a starting cup from a data sheet", kEstimateHelp);
+  const Verb part = verb.part("estimate", "estimate a starting cup from a data sheet", kEstimateHelp);
   CupEstimateOptions& options = part.runs(run_cup_estimate);
-  part.option("--diameter", options.diameter_mm, "MM", "of the lip", positive()).required();
-  part.option("--bellows", options.bellows, "N", "folds: 0 (flat), 1.5 or 2.5");
-  part.option("--material", options.material, "NAME", "of the cup",
+  part.option("--diameter", options.diameter_mm, "MM", "diameter of the lip", positive()).required();
+  part.option("--bellows", options.bellows, "N", "number of folds: 0 (flat), 1.5 or 2.5");
+  part.option("--material", options.material, "NAME", "material of the cup",
               one_of({"silicone", "nitrile", "polyurethane", "natural-rubber"}));
-  part.option("--lip", options.lip, "NAME", "what seals", one_of({"plain", "foam"}));
+  part.option("--lip", options.lip, "NAME", "what seals the lip", one_of({"plain", "foam"}));
   part.option("--vacuum", options.vacuum, "PRESSURE",
-              "gauge pressure of the hold, with its unit: kPa, mbar, bar or Pa");
-  part.option("--stroke", options.stroke_mm, "MM", "free length less length under vacuum", finite());
-  part.option("--mass-max", options.mass_max, "KG", "of the heaviest box: is it held?", positive());
+              "gauge pressure while holding, with its unit: kPa, mbar, bar or Pa");
+  part.option("--stroke", options.stroke_mm, "MM", "free length minus length under vacuum", finite());
+  part.option("--mass-max", options.mass_max, "KG", "mass of the heaviest box, to test the hold", positive());
   part.option("-o,--output", options.output, "FILE.yaml", "also write the block here");
   add_json(part, options.json);
 }
 
 void add_cup_catalogue(const Verb& verb) {
-  const Verb part = verb.part("catalogue", "generic cups by size, at -60 kPa");
+  const Verb part = verb.part("catalogue", "list generic cups by size, at -60 kPa");
   add_json(part, part.runs(run_cup_catalogue).json);
 }
 
 }  // namespace
 
 void add_cup(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "cup", "ask the model of the suction cup",
-                  "`snug cup evaluate --help` and `snug cup settle --help` tell the keys of a line.");
-  add_questions(verb, "evaluate", "the wrench that a deformation gives", kEvaluateHelp, run_cup_evaluate);
-  add_questions(verb, "settle", "where a held box hangs at rest", kSettleHelp, run_cup_settle);
+  const Verb verb(app, action, "cup", "evaluate the model of the suction cup, or estimate a cup from a data sheet",
+                  "`snug cup evaluate --help` and `snug cup settle --help` list the keys of a line.");
+  add_questions(verb, "evaluate", "compute the wrench of a deformation", kEvaluateHelp, run_cup_evaluate);
+  add_questions(verb, "settle", "compute where a held box hangs at rest", kSettleHelp, run_cup_settle);
   add_cup_estimate(verb);
   add_cup_catalogue(verb);
 }

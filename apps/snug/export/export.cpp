@@ -97,7 +97,7 @@ Examples:
   snug export program.csv --scenario scenarios/box-demonstrator.yaml --format urscript --dry-run -o dry.script
   snug export program.csv --scenario scenarios/box-demonstrator.yaml --format urscript --from-box BOX028 -o rest.script
   snug export program.csv --scenario scenarios/box-demonstrator.yaml --format ros-trajectory -o program.yaml
-A program that was packed with fast motions is exported with its own timing, as it is simulated in the scenario's cell.)";
+A program that was packed with fast motions is exported with its own timing, as simulated in the scenario's cell.)";
 
 constexpr const char* kPrograms = "urscript ros-trajectory mc-rtc-csv mc-rtc-flat";
 
@@ -138,7 +138,7 @@ void refuse_without_effect(const Verb& verb, const std::string& format) {
 int run_export(const ExportOptions& options, const Verb& verb) {
   refuse_without_effect(verb, options.format);
   const auto found = std::ranges::find(kFormats, options.format, &ExportFormat::name);
-  SNUG_CHECK(found != kFormats.end(), "a format that the parser let pass");
+  SNUG_CHECK(found != kFormats.end(), "a format that the parser accepts");
   if (options.scenario.empty() && options.changes.any()) {
     throw InputError("command line", "--items, --container, --pallet", "without --scenario", "a scenario to change");
   }
@@ -152,7 +152,7 @@ int run_export(const ExportOptions& options, const Verb& verb) {
 /// Single outputs and inputs, standard ones, in the place of those of the scenario.
 void add_wiring(const Verb& verb, ExportOptions& options) {
   const auto add = [&](const char* name, std::optional<int>& number, const std::string& what) {
-    verb.option(name, number, "N", "of urscript: " + what + " (default: robot.io of the scenario)", whole(0, 7));
+    verb.option(name, number, "N", "with urscript: " + what + " (default: robot.io of the scenario)", whole(0, 7));
   };
   add("--vacuum-output", options.wiring.vacuum_output, "standard digital output of the vacuum");
   add("--blow-off-output", options.wiring.blow_off_output, "standard digital output of the blow-off");
@@ -176,51 +176,51 @@ void add_export(CLI::App& app, Action& action) {
   verb.option("--format", options.format, "NAME", "name of the format, see below", one_of(names)).required();
   verb.option("-o,--output", options.output, "FILE", "the file to write").required();
   add_selection(verb, options.selection);
-  verb.option("--compression", options.compression, "NAME", "of mcap: zstd, or none for readers that cannot unpack it",
+  verb.option("--compression", options.compression, "NAME", "with mcap: zstd, or none for simple readers",
               one_of({"zstd", "none"}));
   verb.option("--encoding", options.encoding, "NAME",
-              "of mcap: protobuf, or json, which people can read and which is several times as large",
+              "with mcap: protobuf, or json, which is readable and several times as large",
               one_of({"protobuf", "json"}));
   verb.option("--scenario", options.scenario, "SCENARIO.yaml",
-              "of a program: scenario file with the robot, its limits and gains");
+              "with a program: scenario with the robot, its limits and gains");
   add_scenario_changes(verb, options.changes);
   verb.option("--sequence", options.sequence, "NAME",
-              "of a program: item sequence that it packs: which boxes it carries, and their masses; refused where it "
+              "with a program: item sequence that it packs, with the boxes and their masses; refused if the program "
               "picks others (default: the first)");
-  verb.option("--corrections", options.corrections, "LAYER", "of a program: a layer of the scenario, or none");
+  verb.option("--corrections", options.corrections, "LAYER", "with a program: a layer of the scenario, or none");
   verb.option("--controller", options.motion.controller, "KIND",
-              "of a program: what it was made for, lagged or fast (default: as the program was packed)",
+              "with a program: what it was made for, lagged or fast (default: as the program was packed)",
               one_of({"lagged", "fast"}));
   verb.option("--tempo", options.motion.tempo, "FRACTION",
-              "of a program: fraction of the speeds, with fast (default: that it was packed with, or 1)",
+              "with a program: fraction of the full speed, with fast (default: that of the program, or 1)",
               within(0.5, 1.0));
   verb.flag("--unchecked", options.is_unchecked,
-            "of a program: write it without simulating it first; otherwise it is refused where the robot stops, no box "
-            "is sealed or a box is lost");
-  verb.option("--period", options.period, "SECONDS", "of ros-trajectory: time between points at most",
+            "with a program: write it without simulating it first; otherwise snug refuses it if the robot stops, no "
+            "box is sealed or a box is lost");
+  verb.option("--period", options.period, "SECONDS", "with ros-trajectory: longest time between points",
               within(1e-3, 100.0));
   add_wiring(verb, options);
   verb.option("--vacuum-timeout", options.script.vacuum_timeout, "SECONDS",
-              "of urscript: the program halts when the vacuum has not changed by then", within(0.1, 600.0));
+              "with urscript: the program halts if the vacuum has not changed by then", within(0.1, 600.0));
   verb.option("--vent-time", options.script.vent_time, "SECONDS",
-              "of urscript: from when the input says that the vacuum fell until it is gone; where robot.io has a "
-              "gauge, that has to say so as well",
+              "with urscript: time from when the input reports that the vacuum fell until it is gone; a gauge in "
+              "robot.io must confirm it",
               within(0.0, 60.0));
   verb.option("--part-timeout", options.script.part_timeout, "SECONDS",
-              "of urscript: the program halts when no box stands at the aligner by then", within(0.1, 86400.0));
+              "with urscript: the program halts if no box stands at the aligner by then", within(0.1, 86400.0));
   verb.flag("--payload-inertia", options.script.has_inertia,
-            "of urscript: payloads with inertia, changed over 0.1 s (set_target_payload, PolyScope 5.10 and later)");
+            "with urscript: payloads with inertia (set_target_payload, PolyScope 5.10 and later)");
   const OptionRow from_box = verb.option("--from-box", options.from_box, "BOX",
-                                         "of urscript: begin with this box: those before it lie where they belong");
+                                         "with urscript: begin with this box; those before it are packed already");
   verb.flag("--dry-run", options.script.is_dry,
-            "of urscript: waypoints as straight moves 20 mm higher, at a quarter of their speed, nothing switched")
+            "with urscript: write straight moves 20 mm above the waypoints, at a quarter of their speed, without "
+            "switching outputs")
       .excludes(from_box);
-  verb.option("--time", options.time, "SECONDS", "of glb and moveit-scene: the instant (default: the end)", finite());
-  verb.flag("--load", options.is_load_only, "of glb: only the container and the boxes in it, in the container's frame");
-  verb.option(
-      "--urdf", options.urdf, "FILE.urdf",
-      "of mcap, glb and moveit-scene: the robot in it, how it looks and where its root stands (default: the file that "
-      "its scenario names)");
+  verb.option("--time", options.time, "SECONDS", "with glb and moveit-scene: the instant (default: the end)", finite());
+  verb.flag("--load", options.is_load_only, "with glb: only container and boxes, in the container's frame");
+  verb.option("--urdf", options.urdf, "FILE.urdf",
+              "with mcap, glb and moveit-scene: URDF with the looks of the robot and the place of its root (default: "
+              "the file that the scenario names)");
 }
 
 }  // namespace snug::app

@@ -114,7 +114,7 @@ int run_identify_damping(const IdentifyDampingOptions& options) {
 
 constexpr const char* kStiffnessHelp =
     R"(Each pose: where the lip is in the gripper's frame, and the cup's wrench on the box (sensor) or the box's mass and centre of
-mass with the gripper's orientation (gravity). Files: docs/formats.md, static poses. Poses that do not belong to the rest are
+mass with the gripper's orientation (gravity). Files: docs/formats.md, static poses. Outliers are
 left out and named by index. Verdicts: identified (standard error below 5 %), weak (below 25 %), not identifiable.
 Methods: compliance, closed form, the default; wrench, closed form, exact without noise, biased low with it;
 errors-in-variables, maximum likelihood, the best error bars.
@@ -134,32 +134,32 @@ Examples:
 }  // namespace
 
 void add_identify_stiffness(const Verb& verb) {
-  const Verb part = verb.part("stiffness", "the cup's stiffness from a held box at rest", kStiffnessHelp);
+  const Verb part = verb.part("stiffness", "estimate the stiffness of the cup from a held box at rest", kStiffnessHelp);
   IdentifyStiffnessOptions& options = part.runs(run_identify_stiffness);
   part.option("poses", options.input, "FILE.json|FILE.csv", "static poses").required();
   part.option("--method", options.method, "NAME", "compliance, wrench or errors-in-variables",
               one_of({"compliance", "wrench", "errors-in-variables"}));
-  part.option("--wrench", options.wrench, "NAME", "sensor or gravity; the sensor's unless some pose has none",
+  part.option("--wrench", options.wrench, "NAME", "sensor or gravity (default: sensor, unless a pose lacks it)",
               one_of({"sensor", "gravity"}));
-  part.option("--parameters", options.parameters, "N", "5, a cup that looks the same from all sides, or 21",
+  part.option("--parameters", options.parameters, "N", "5 (a cup that is symmetric about its axis) or 21",
               one_of({"5", "21"}));
   add_identify_scenario(part, options);
   add_pose_noise(part, options);
-  part.option("--force-noise", options.force_noise, "N", "0.3 unless the file tells", positive());
-  part.option("--torque-noise", options.torque_noise, "NM", "0.02 unless the file tells", positive());
+  part.option("--force-noise", options.force_noise, "N", "deviation (default: the file's, or 0.3)", positive());
+  part.option("--torque-noise", options.torque_noise, "NM", "deviation (default: the file's, or 0.02)", positive());
   add_identify_result(part, options);
 }
 
 void add_identify_damping(const Verb& verb) {
-  const Verb part = verb.part("damping", "the cup's damping from free oscillations", kDampingHelp);
+  const Verb part = verb.part("damping", "estimate the damping of the cup from free oscillations", kDampingHelp);
   IdentifyDampingOptions& options = part.runs(run_identify_damping);
   part.option("releases", options.inputs, "FILE.json|FILE.csv", "records after a release").required();
-  part.option("--release", options.release, "N", "only this one of all, counted from 0", whole(0));
+  part.option("--release", options.release, "N", "use only this release, counted from 0", whole(0));
   part.option("--start", options.start, "NAME",
-              "how the box moves when a record begins: rest, moving, or auto: at rest unless the data contradict",
+              "motion of the box when a record begins: rest, moving, or auto (at rest unless the data contradict)",
               one_of({"auto", "rest", "moving"}));
-  part.flag("--coupling", options.coupling, "also the damping that couples shear and bending");
-  part.flag("--stiffness", options.stiffness, "the stiffness too, from the given one on");
+  part.flag("--coupling", options.coupling, "estimate also the damping that couples shear and bending");
+  part.flag("--stiffness", options.stiffness, "estimate the stiffness as well, starting from the given one");
   add_identify_scenario(part, options);
   add_pose_noise(part, options);
   add_identify_result(part, options);
@@ -183,25 +183,25 @@ void apply(const IdentifyOptions& options, identification::MeasurementNoise& noi
 
 void add_identify_scenario(const Verb& part, IdentifyOptions& options) {
   part.option("--scenario", options.scenario, "SCENARIO.yaml",
-              "whose cup is the first guess; without, the cup that scenarios have by default");
+              "scenario with the cup of the first guess (default: the cup that scenarios have by default)");
 }
 
 void add_pose_noise(const Verb& part, IdentifyOptions& options) {
   part.option("--position-noise", options.position_noise, "M",
-              "standard deviation along each axis; 0.0005 unless the file tells", positive());
-  part.option("--rotation-noise", options.rotation_noise, "RAD", "about each axis; 0.0035 unless the file tells",
-              positive());
+              "standard deviation along each axis (default: that of the file, or 0.0005)", positive());
+  part.option("--rotation-noise", options.rotation_noise, "RAD",
+              "standard deviation about each axis (default: that of the file, or 0.0035)", positive());
 }
 
 void add_identify_result(const Verb& part, IdentifyOptions& options) {
-  part.option("-o,--output", options.output, "FILE.yaml", "the numbers as a block that a scenario takes");
+  part.option("-o,--output", options.output, "FILE.yaml", "write the numbers as a block for a scenario");
   add_json(part, options.json);
 }
 
 void add_identify(CLI::App& app, Action& action) {
-  const Verb verb(
-      app, action, "identify", "numbers of the model from measurements, with their errors",
-      "`snug identify stiffness --help` and so on tell files and methods; docs/theory/identification.md the rest.");
+  const Verb verb(app, action, "identify", "estimate parameters of the model from measurements, with their errors",
+                  "`snug identify stiffness --help` and so on describe files and methods; "
+                  "docs/theory/identification.md has the rest.");
   add_identify_stiffness(verb);
   add_identify_damping(verb);
   add_identify_pluck(verb);

@@ -33,31 +33,31 @@ int run_identify_payload(const IdentifyPayloadOptions& options) {
 }
 
 constexpr const char* kPayloadHelp =
-    R"(A lift of 1.5 s tells the mass to 2 % and the centre of mass to 5 mm, where the motion tells it: straight up tells nothing of
-where the centre is along the weight. Columns of the table: t, x, y, z, qw, qx, qy, qz (the gripper's end in the world),
+    R"(A lift of 1.5 s determines the mass to 2 % and the centre of mass to 5 mm, if the motion excites it: a lift straight up does
+not determine the centre along the weight. Columns of the table: t, x, y, z, qw, qx, qy, qz (the gripper's end in the world),
 fx, fy, fz, tx, ty, tz (of the cup on the box, in the gripper's frame about its end: up for a hanging box), perhaps lip_x ..
-lip_qz. The cup's stiffness, that of --scenario, says where the lip is under the wrench; --rigid-lip: where it is unloaded.
+lip_qz. The stiffness of the cup in --scenario gives the place of the lip under the wrench; with --rigid-lip it is the unloaded place.
 Example:
   snug identify payload scenarios/examples/lift.csv --rigid-lip --json)";
 
 }  // namespace
 
 void add_identify_payload(const Verb& verb) {
-  const Verb part = verb.part("payload", "mass and centre of mass of a held box, from one lift", kPayloadHelp);
+  const Verb part = verb.part("payload", "estimate mass and centre of mass of a held box from one lift", kPayloadHelp);
   IdentifyPayloadOptions& options = part.runs(run_identify_payload);
   part.option("lift", options.input, "LIFT.csv", "what sensor and joints recorded").required();
   part.option("--scenario", options.scenario, "SCENARIO.yaml",
-              "whose cup holds the box; without, the cup that scenarios have by default");
-  part.flag("--rigid-lip", options.rigid_lip, "the lip does not give, as of a hard gripper");
+              "scenario with the cup that holds the box (default: the cup that scenarios have by default)");
+  part.flag("--rigid-lip", options.rigid_lip, "the lip is rigid, as of a hard gripper");
   const auto deviation = [&](const char* name, std::optional<double>& field, const char* what, const char* unit) {
     part.option(name, field, unit, what, positive());
   };
-  deviation("--force-noise", options.force_noise, "standard deviation of a reading; default 0.3", "N");
-  deviation("--torque-noise", options.torque_noise, "the same; default 0.02", "NM");
-  deviation("--position-noise", options.position_noise, "of the lip; default 0.0002", "M");
-  deviation("--rotation-noise", options.rotation_noise, "of the lip; default 0.004", "RAD");
-  deviation("--force-bias", options.force_bias, "what taring left, standard deviation; default 0.015", "N");
-  deviation("--torque-bias", options.torque_bias, "the same; default 0.001", "NM");
+  deviation("--force-noise", options.force_noise, "deviation of a force reading; default 0.3", "N");
+  deviation("--torque-noise", options.torque_noise, "deviation of a torque reading; default 0.02", "NM");
+  deviation("--position-noise", options.position_noise, "deviation of the lip's position; default 0.0002", "M");
+  deviation("--rotation-noise", options.rotation_noise, "deviation of the lip's rotation; default 0.004", "RAD");
+  deviation("--force-bias", options.force_bias, "deviation of the force bias; default 0.015", "N");
+  deviation("--torque-bias", options.torque_bias, "deviation of the torque bias; default 0.001", "NM");
   add_json(part, options.json);
 }
 

@@ -53,9 +53,9 @@ int run_identify_pluck(const IdentifyPluckOptions& options) {
 }
 
 constexpr const char* kPluckHelp =
-    R"(Swings say little about damping along the cup's axis. This writes the experiment that does, as sensors would record it
-(360 Hz, 1.5 s): the box hangs straight down, is pulled along the axis and let go; --direction lateral, bend, torsion for
-the others. What it is identified with: snug identify damping.
+    R"(Swings determine damping along the cup's axis poorly. pluck writes an experiment that determines it, as sensors would record
+it (360 Hz, 1.5 s): the box hangs straight down, is pulled along the axis and let go; --direction lateral, bend, torsion for
+the other directions. `snug identify damping` reads it.
 Examples:
   snug identify pluck --scenario scenarios/box-demonstrator.yaml --parcel BOX013 -o pluck.json
   snug identify damping pluck.json)";
@@ -63,12 +63,12 @@ Examples:
 }  // namespace
 
 void add_identify_pluck(const Verb& verb) {
-  const Verb part = verb.part("pluck", "a virtual release, to see what it would tell", kPluckHelp);
+  const Verb part = verb.part("pluck", "simulate a release, to see what it would identify", kPluckHelp);
   IdentifyPluckOptions& options = part.runs(run_identify_pluck);
   part.option("--parcel", options.parcel, "ID", "box of the scenario, held in the middle of its upper face");
   part.option("--direction", options.direction, "NAME", "axial, lateral, bend or torsion",
               one_of({"axial", "lateral", "bend", "torsion"}));
-  part.option("--amplitude", options.amplitude, "M|RAD", "pulled so far; 0.004 m, or 0.1 rad for bend and torsion",
+  part.option("--amplitude", options.amplitude, "M|RAD", "displacement; 0.004 m, or 0.1 rad for bend and torsion",
               positive());
   part.option("--repeat", options.repeat, "N", "releases", whole(1, 100));
   part.option("--seed", options.seed, "N", "of the noise", whole(0));

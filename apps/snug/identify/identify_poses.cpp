@@ -42,9 +42,9 @@ int run_identify_poses(const IdentifyPosesOptions& options) {
 }
 
 constexpr const char* kPosesHelp =
-    R"(Another make of cup: a robot deforms it, a sensor reads the wrench. The law is the gradient of one potential, so it is passive;
+    R"(For cups of another make: a robot deforms the cup, a sensor reads the wrench. The law is the gradient of one potential, so it is passive;
 lateral and bending stiffness change with compression. Each fifth pose in turn is predicted from the others, beside a linear
-fit. Where it leaves more than half a standard deviation of a component it says that it does not explain the data.
+fit. If more than half a standard deviation of a component remains, poses reports that the law does not explain the data.
 Columns x_mm, y_mm, z_mm, qw .. qz, fx_N .. fz_N, tx_Nmm .. tz_Nmm: docs/formats.md, cup poses; theory: docs/theory/cup.md, section 8.
 Examples:
   snug identify poses scenarios/examples/cup-poses.csv --json
@@ -54,15 +54,15 @@ Examples:
 }  // namespace
 
 void add_identify_poses(const Verb& verb) {
-  const Verb part = verb.part("poses", "a cup's law from wrenches in many poses", kPosesHelp);
+  const Verb part = verb.part("poses", "estimate the law of a cup from wrenches in many poses", kPosesHelp);
   IdentifyPosesOptions& options = part.runs(run_identify_poses);
   part.option("poses", options.input, "FILE.csv", "poses and wrenches").required();
-  const OptionRow cup = part.option("--cup", options.cup, "CUP.yaml", "the law that is evaluated");
+  const OptionRow cup = part.option("--cup", options.cup, "CUP.yaml", "law to evaluate");
   const OptionRow evaluate =
-      part.flag("--evaluate", options.evaluate, "fit nothing: only what the law of --cup predicts");
+      part.flag("--evaluate", options.evaluate, "fit nothing, only report what the law of --cup predicts");
   cup.needs(evaluate);
   evaluate.needs(cup);
-  part.option("-o,--output", options.output, "FILE.yaml", "the law found").excludes(evaluate);
+  part.option("-o,--output", options.output, "FILE.yaml", "write the law that was found").excludes(evaluate);
   add_json(part, options.json);
 }
 

@@ -58,12 +58,12 @@ Examples:
 }  // namespace
 
 void add_identify_release(const Verb& verb) {
-  const Verb part = verb.part("release", "how the cup lets go, from recorded releases", kReleaseHelp);
+  const Verb part = verb.part("release", "estimate how the cup lets go from recorded releases", kReleaseHelp);
   IdentifyReleaseOptions& options = part.runs(run_identify_release);
   part.option("recordings", options.inputs, "FILE.csv", "recorded releases").required();
-  part.flag("--evaluate", options.evaluate, "fit nothing: only what the cup predicts");
+  part.flag("--evaluate", options.evaluate, "fit nothing, only report what the cup predicts");
   part.option("--scenario", options.scenario, "SCENARIO.yaml",
-              "whose cup is evaluated, or is the first guess (default: scenarios/box-demonstrator.yaml)");
+              "scenario with the cup to evaluate, or the first guess (default: scenarios/box-demonstrator.yaml)");
   add_identify_result(part, options);
 }
 

@@ -108,9 +108,9 @@ int run_identify_scene(const IdentifySceneOptions& options) {
 }
 
 constexpr const char* kSceneHelp =
-    R"(The task names a scenario, the bodies that were recorded, and which numbers of the scenario are open, with bounds. First
-comes what each of them changes; combinations that the recordings cannot tell are named and left alone. Then the search, and
-standard errors. Each fifth recording is held back and predicted. Task files: docs/identification.md.
+    R"(The task names a scenario, the recorded bodies, and the unknown parameters of the scenario, with bounds. scene first shows
+what each of them changes; it names combinations that the recordings do not determine, and leaves them unchanged. Then it
+searches, and gives standard errors. Each fifth recording is held back and predicted. Task files: docs/identification.md.
 Examples:
   snug identify scene scenarios/tosses/task.yaml --recordings scenarios/tosses/example.csv --evaluate --json
   snug identify scene scenarios/tosses/task.yaml --recordings scenarios/tosses/example.csv --local 10 --log points.csv --page found.html)";
@@ -118,26 +118,25 @@ Examples:
 }  // namespace
 
 void add_identify_scene(const Verb& verb) {
-  const Verb part = verb.part("scene", "numbers of a scenario, from recordings of its bodies", kSceneHelp);
+  const Verb part = verb.part("scene", "estimate parameters of a scenario from recordings of its bodies", kSceneHelp);
   IdentifySceneOptions& options = part.runs(run_identify_scene);
-  part.option("task", options.task, "TASK.yaml", "what is open, and what was recorded").required();
-  part.option("--recordings", options.recordings, "FILE", "instead of those that the task names");
-  part.flag("--evaluate", options.evaluate, "only the errors of the task's present values on all recordings");
-  part.flag("--floor", options.floor, "only the error that noise of the start alone sets, at the present values")
+  part.option("task", options.task, "TASK.yaml", "unknown parameters, and what was recorded").required();
+  part.option("--recordings", options.recordings, "FILE", "recordings to use instead of those of the task");
+  part.flag("--evaluate", options.evaluate, "only report the errors of the task's present values on all recordings");
+  part.flag("--floor", options.floor, "only report the error that noise of the start alone causes")
       .excludes({"--evaluate"});
-  part.option("--scatter", options.scatter, "N", "points spread over the bounds first", whole(0, 1000000));
+  part.option("--scatter", options.scatter, "N", "points spread over the bounds before the search", whole(0, 1000000));
   part.option("--global", options.global, "N", "evaluations of the global search", whole(0, 1000000));
   part.option("--local", options.local, "N", "evaluations of the local search", whole(0, 1000000));
-  part.option("--seed", options.seed, "N", "of the searches", whole(0));
-  part.option("--log", options.log, "FILE.csv",
-              "points tried are added to it; what is in it already is not computed again");
+  part.option("--seed", options.seed, "N", "seed of the searches", whole(0));
+  part.option("--log", options.log, "FILE.csv", "file of the points tried; points in it are not computed again");
   add_threads(part, options.threads);
-  part.option("-o,--output", options.output, "TASK.yaml", "the task with the values found");
+  part.option("-o,--output", options.output, "TASK.yaml", "write the task with the values found");
   part.flag("--profile", options.profile,
-            "95 % intervals by the profile likelihood: each value with all others fitted again (takes longer)");
+            "compute 95 % intervals by the profile likelihood: each value with all others fitted again (takes longer)");
   part.option("--scenario", options.scenario, "SCENARIO.yaml",
-              "the scenario with the values found, and with what they leave uncertain");
-  part.option("--page", options.page, "FILE.html", "what was found, and what it improves on the recordings held back");
+              "write the scenario with the values found and their remaining uncertainty");
+  part.option("--page", options.page, "FILE.html", "write a page: what was found and improved");
   add_json(part, options.json);
 }
 

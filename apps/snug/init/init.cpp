@@ -53,7 +53,7 @@ void require_free(const fs::path& file) {
 
 int run_init(const InitOptions& options) {
   const auto kind = std::ranges::find_if(kKinds, [&](const InitKind& known) { return options.kind == known.name; });
-  SNUG_CHECK(kind != kKinds.end(), "a kind that the parser let pass");
+  SNUG_CHECK(kind != kKinds.end(), "a kind that the parser accepts");
   const std::string name = options.kind + ".yaml";
   std::string text = read_file(shipped_folder() / "scenarios/init" / name, "a scenario to begin with");
   const fs::path folder = options.folder;
@@ -94,8 +94,8 @@ void add_init(CLI::App& app, Action& action) {
   }
   const Verb verb(app, action, "init", "write a small scenario with comments to begin with", footer + kInitExamples);
   InitOptions& options = verb.runs(run_init);
-  verb.option("kind", options.kind, "KIND", "what to begin with, see below", one_of(names)).required();
-  verb.option("folder", options.folder, "DIR", "where to write it; made when it is not there").required();
+  verb.option("kind", options.kind, "KIND", "what to write, see below", one_of(names)).required();
+  verb.option("folder", options.folder, "DIR", "where to write it; created if missing").required();
 }
 
 }  // namespace snug::app

@@ -97,15 +97,15 @@ int run_items_sequence(const ItemsSequenceOptions& options) {
 }
 
 constexpr const char* kReadHelp =
-    R"(A table as people keep it becomes a CSV of orders (docs/formats.md): commas, semicolons or tabs between columns, headings in
-English, German, Dutch or French, in any order, units in headings or behind numbers. What the sheet does not say has to be said;
-the error names the options and what each would mean for the first box.
+    R"(read converts a table into a CSV of orders (docs/formats.md). Columns may be separated by commas, semicolons or tabs; headings
+may be English, German, Dutch or French, in any order; units stand in headings or after numbers. If the sheet leaves
+something open, the error names the options and what each would mean for the first box.
 Example:
   snug items read scenarios/examples/sheet.csv --length-unit cm --mass-unit g -o orders.csv)";
 
 constexpr const char* kReduceHelp =
-    R"(Report section 3.1.1: boxes of nearly equal size and mass become one, the most frequent of these are kept, and it is
-said how many of all boxes have a representative near their size. ORDERS is a CSV with a header or JSON in the BED-BPP form.
+    R"(Report section 3.1.1: reduce joins boxes of nearly equal size and mass, keeps the most frequent of these, and reports
+how many of all boxes have a representative near their size. ORDERS is a CSV with a header or JSON in the BED-BPP form.
 Example:
   snug items reduce scenarios/orders-example.csv --count 4 -o types.yaml)";
 
@@ -131,61 +131,61 @@ constexpr const char* kItemsHelp =
   snug items reduce scenarios/orders-example.csv --count 4 -o types.yaml
   snug items sequence scenarios/box-demonstrator.yaml --types types.yaml --fill 90 -o sequences.yaml
   snug pack scenarios/box-demonstrator.yaml --items sequences.yaml --sequence drawn-1
-`snug items draw --help`, `snug items read --help`, `snug items reduce --help` and `snug items sequence --help` tell more.)";
+See also `snug items draw --help`, `snug items read --help`, `snug items reduce --help` and `snug items sequence --help`.)";
 
 void add_result(const Verb& verb, std::optional<std::string>& output, const char* value) {
   verb.option("-o,--output", output, value, "file to write instead of stdout");
 }
 
 void add_draw(const Verb& items) {
-  const Verb verb = items.part("draw", "typical orders, drawn by a seed", kDrawHelp);
+  const Verb verb = items.part("draw", "draw typical orders by a seed", kDrawHelp);
   ItemsDrawOptions& options = verb.runs(run_items_draw);
-  verb.option("--orders", options.wanted.orders, "N", "how many", whole(1, model::kMostTypicalOrders));
-  verb.option("--boxes", options.wanted.boxes, "N", "of an order, on average", whole(1, model::kMostTypicalBoxes));
+  verb.option("--orders", options.wanted.orders, "N", "number of orders", whole(1, model::kMostTypicalOrders));
+  verb.option("--boxes", options.wanted.boxes, "N", "boxes of an order, as a mean", whole(1, model::kMostTypicalBoxes));
   verb.option("--seed", options.wanted.seed, "N", "", whole(0));
   add_result(verb, options.output, "FILE.csv");
 }
 
 void add_read(const Verb& items) {
-  const Verb verb = items.part("read", "a table of boxes as people keep it, as a CSV of orders", kReadHelp);
+  const Verb verb = items.part("read", "convert a table of boxes into a CSV of orders", kReadHelp);
   ItemsReadOptions& options = verb.runs(run_items_read);
   verb.option("sheet", options.sheet, "SHEET.csv", "table with a header").required();
   verb.option("--length-unit", options.answers.length, "UNIT",
-              "of edges for which the sheet has no unit: mm, cm, m or in", one_of({"mm", "cm", "m", "in"}));
-  verb.option("--mass-unit", options.answers.mass, "UNIT", "of masses for which the sheet has no unit: kg, g or lb",
+              "unit of edges for which the sheet has none: mm, cm, m or in", one_of({"mm", "cm", "m", "in"}));
+  verb.option("--mass-unit", options.answers.mass, "UNIT", "unit of masses for which the sheet has none: kg, g or lb",
               one_of({"kg", "g", "lb"}));
   verb.option("--decimal", options.answers.decimal, "MARK",
-              "what stands before decimals where it is unclear: point or comma", one_of({"point", "comma"}));
+              "decimal mark, if the sheet leaves it unclear: point or comma", one_of({"point", "comma"}));
   add_result(verb, options.output, "FILE.csv");
 }
 
 void add_reduce(const Verb& items) {
-  const Verb verb = items.part("reduce", "few boxes that stand for those of many orders", kReduceHelp);
+  const Verb verb = items.part("reduce", "find a few boxes that represent those of many orders", kReduceHelp);
   ItemsReduceOptions& options = verb.runs(run_items_reduce);
   verb.option("orders", options.orders, "ORDERS", "orders").required();
-  verb.option("--count", options.count, "N", "representatives wanted", whole(1, kMostRuns));
-  verb.option("--group", options.group_percent, "PERCENT", "boxes join whose edges and mass differ by at most so much",
+  verb.option("--count", options.count, "N", "number of representatives", whole(1, kMostRuns));
+  verb.option("--group", options.group_percent, "PERCENT", "join boxes whose edges and mass differ by at most this",
               within(1e-3, 1000.0));
-  verb.option("--cover", options.cover_percent, "PERCENT",
-              "a box is represented when its edges differ by at most so much", positive());
+  verb.option("--cover", options.cover_percent, "PERCENT", "a box is represented if its edges differ by at most this",
+              positive());
   verb.flag("--json", options.json, "print JSON");
   verb.option("-o,--output", options.output, "FILE.yaml", "file for the representatives as parcel types of a scenario");
 }
 
 void add_sequence(const Verb& items) {
-  const Verb verb = items.part("sequence", "random orders of a scenario's boxes", kSequenceHelp);
+  const Verb verb = items.part("sequence", "draw random orders of a scenario's boxes", kSequenceHelp);
   ItemsSequenceOptions& options = verb.runs(run_items_sequence);
   add_scenario(verb, options.scenario);
-  verb.option("--fill", options.fill_percent, "PERCENT", "volume of the boxes, of the target container's",
+  verb.option("--fill", options.fill_percent, "PERCENT", "volume of the boxes, in percent of the target container's",
               within(1e-3, 1000.0));
   const OptionRow all = verb.flag("--all", options.all,
-                                  "every box of the scenario once, whatever they fill: the sequences that compare "
-                                  "--random draws with the same seed and --name random");
+                                  "use every box of the scenario once, whatever they fill; with --name random and the "
+                                  "same seed these are the sequences of compare --random");
   const OptionRow types =
       verb.option("--types", options.types, "FILE.yaml",
-                  "draw new boxes of these types (as written by items reduce) instead of the scenario's boxes");
+                  "draw new boxes of these types (written by items reduce) instead of the scenario's boxes");
   all.excludes(types);
-  verb.option("--sequences", options.sequences, "N", "how many", whole(1, kMostSequences));
+  verb.option("--sequences", options.sequences, "N", "number of orders", whole(1, kMostSequences));
   verb.option("--name", options.name, "NAME", "the sequences are NAME-1, NAME-2, ...");
   verb.option("--repeat", options.repeat, "0..1", "probability that a box is of the type of the one before",
               within(0.0, 1.0));
@@ -197,7 +197,7 @@ void add_sequence(const Verb& items) {
 }  // namespace
 
 void add_items(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "items", "tables of boxes, boxes that stand for many, and sequences of boxes",
+  const Verb verb(app, action, "items", "read tables of boxes, reduce them to representatives, draw sequences",
                   kItemsHelp);
   add_draw(verb);
   add_read(verb);

@@ -52,17 +52,17 @@ constexpr const char* kKeysExamples = R"(Examples:
   snug keys keys --add camera            # of one more
   snug serve scenarios/box-demonstrator.yaml --click tcp://0.0.0.0:5555 --keys keys
   snug control program.csv --click tcp://127.0.0.1:5555 --keys keys/controller.key_secret     # elsewhere: its address
-The folder of another machine needs server.key and its own NAME.key_secret, never server.key_secret. A controller is shut
-out by removing its NAME.key and starting the served cell again.)";
+Another machine needs a folder with server.key and its own NAME.key_secret, never server.key_secret. To exclude a controller,
+remove its NAME.key and start the served cell again.)";
 
 }  // namespace
 
 void add_keys(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "keys", "make the keys by which a served cell and its controllers know each other",
+  const Verb verb(app, action, "keys", "make the keys with which a served cell and its controllers identify each other",
                   kKeysExamples);
   KeysOptions& options = verb.runs(run_keys);
-  verb.option("folder", options.folder, "DIR", "where they go; made when it is not there").required();
-  verb.option("--add", options.name, "NAME", "a pair for one more controller or observer");
+  verb.option("folder", options.folder, "DIR", "folder to write; created if missing").required();
+  verb.option("--add", options.name, "NAME", "add a pair for one more controller or observer");
 }
 
 }  // namespace snug::app

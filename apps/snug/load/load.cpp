@@ -58,7 +58,7 @@ int run_load(const LoadOptions& options) {
 }
 
 constexpr const char* kLoadHelp =
-    R"(Boxes may stand on each other in any way that does not overlap: no support, weight or order of loading is asked for.
+    R"(Boxes may stand on each other in any way that does not overlap: load ignores support, weight and order of loading.
 FILE is one of
   .txt   instances of Bischoff and Ratcliff in the OR-Library's form (thpack): containers and boxes
   .csv   orders with a header, .json orders in the BED-BPP form: one problem for each order, with --container
@@ -75,14 +75,14 @@ void add_load(CLI::App& app, Action& action) {
   LoadOptions& options = verb.runs(run_load);
   verb.option("file", options.file, "FILE", "instances or orders").required();
   verb.option("--container", options.container_mm, "MM",
-              "inner length, width and height of the container of orders, as 600x400x300 or 600 400 300",
-              within(1.0, 1e5))
+              "inner length, width and height of the container, as 600x400x300 or 600 400 300", within(1.0, 1e5))
       .delimiter('x')
       .expected(3)
       .one_each();
-  verb.option("--time", options.time, "S", "seconds on one core of 2.5 GHz for each problem", within(0.0, 86400.0));
+  verb.option("--time", options.time, "S", "search time for each problem, on one core of 2.5 GHz",
+              within(0.0, 86400.0));
   verb.option("--first", options.first, "N", "only the first N problems", whole(1, kMostThings));
-  verb.option("--threads", options.threads, "N", "threads; the load does not depend on it", whole(1, kMostThreads));
+  verb.option("--threads", options.threads, "N", "threads; they do not change the load", whole(1, kMostThreads));
   add_json(verb, options.json);
   verb.option("-o,--output", options.output, "FILE", "file to write instead of stdout");
 }

@@ -16,7 +16,7 @@ constexpr const char* kManualExamples = R"(Examples:
 }  // namespace
 
 void add_manual(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "manual", "print this manual in the language of man(7)", kManualExamples);
+  const Verb verb(app, action, "manual", "print the manual page in the format of man(7)", kManualExamples);
   verb.acts([&app] {
     print(commands::format_manual(list_commands(app), version_text()));
     return kSuccess;

@@ -74,17 +74,17 @@ Examples:
 }  // namespace
 
 void add_measure(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "measure", "a virtual experiment: what sensors would have seen of a simulation",
+  const Verb verb(app, action, "measure", "make a virtual experiment: what sensors would have measured in a simulation",
                   kMeasureHelp);
   MeasureOptions& options = verb.runs(run_measure);
   verb.option("recordings", options.recordings, "RECORDING.h5", "recordings of runs, each a repetition").required();
   verb.option("--sensors", options.sensors, "SENSORS.yaml", "rates, noise, losses and clocks").required();
   verb.option("-o,--output", options.output, "FILE.h5", "the archive to write").required();
-  verb.option("--repetitions", options.repetitions, "N", "of one recording", whole(1, 100));
-  verb.option("--seed", options.seed, "N", "of noise, losses, clocks and frames", whole(0));
+  verb.option("--repetitions", options.repetitions, "N", "repetitions of each recording", whole(1, 100));
+  verb.option("--seed", options.seed, "N", "seed of noise, losses, clocks and frames", whole(0));
   verb.option("--date", options.date, "YYYYMMDDTHHMMSSZ",
-              "of the first repetition, for its name; the next ones are 20 minutes apart");
-  verb.option("--truth", options.truth, "FILE.json", "a file for what was drawn: clocks, bias, frames, losses");
+              "date in the name of the first repetition; the next ones are 20 minutes apart");
+  verb.option("--truth", options.truth, "FILE.json", "write what was drawn: clocks, bias, frames, losses");
 }
 
 }  // namespace snug::app

@@ -87,13 +87,13 @@ int run_perceive(const PerceiveOptions& options) {
 }
 
 constexpr const char* kPerceiveHelp =
-    R"(Reads depth alone: no labels, no colour, no truth. Boxes are fitted with the sizes that the scenario knows; covariances come from
-the errors that its camera states.
+    R"(perceive reads depth alone: no labels, colour or truth. It fits boxes with the sizes of the scenario; covariances follow from
+the errors of its camera.
 FRAME is a PNG (16-bit grey), a PLY or a PCD (text or binary, organised or not) or an HDF5 of `snug camera`. Files of `snug camera` say
 where the camera is. For others a file beside the frame says it (NAME.json, .yaml or .yml, else camera.json, .yaml or .yml in its folder),
 or --camera-file; what they leave out is the scenario's camera, its intrinsics replaced by --intrinsics (docs/camera.md).
-EXPECT is a list of placements as `snug pack --plan` writes it: which box is believed to be where in the container. A box that is
-elsewhere is looked for: leave out boxes that are not in the container yet.
+EXPECT is a list of placements as `snug pack --plan` writes it: where each box is believed to be in the container. perceive searches
+boxes that are elsewhere; leave out boxes that are not in the container yet.
 Exit code 1: the frame itself cannot be used (too few points, or something stands in the view).
 Examples:
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --plan plan.json -o run.h5
@@ -102,34 +102,33 @@ Examples:
   snug camera run.h5 -o frame.ply
   snug perceive frame.ply --scenario scenarios/box-demonstrator.yaml --expect plan.json -o boxes.json
 Frames of other cameras: a PNG with --intrinsics FX FY CX CY and --depth-unit METRES, a PLY or PCD with --points-in-camera and --axes if
-need be. Where next to no point can be one of the camera, the message says what would fit: another unit, other axes, another frame.)";
+necessary. If the camera could see almost none of the points, the message says what would fit: another unit, other axes, another frame.)";
 
 }  // namespace
 
 void add_perceive(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "perceive", "where the boxes are, from a depth frame", kPerceiveHelp);
+  const Verb verb(app, action, "perceive", "find the boxes in a depth frame", kPerceiveHelp);
   PerceiveOptions& options = verb.runs(run_perceive);
-  verb.option("frame", options.frame, "FILE", "of a depth camera").required();
-  verb.option("--scenario", options.scenario, "FILE.yaml", "with the cell, its camera and its boxes").required();
-  verb.option("--expect", options.expect, "FILE.yaml", "which box is believed to be where").required();
-  verb.option("--camera", options.camera, "NAME", "name in the scenario; without it the first");
-  verb.option("--intrinsics", options.intrinsics, "FX FY CX CY", "fx fy cx cy of the frame, pixels").expected(4);
-  verb.option(
-      "--depth-unit", options.depth_unit, "M",
-      "metres of a step of grey, or of a unit of a PLY or PCD that is not ours; without it 0.001 of a PNG, 1 of these",
-      within(1e-7, 1.0));
+  verb.option("frame", options.frame, "FILE", "frame of a depth camera").required();
+  verb.option("--scenario", options.scenario, "FILE.yaml", "scenario of cell, camera and boxes").required();
+  verb.option("--expect", options.expect, "FILE.yaml", "where each box is believed to be").required();
+  verb.option("--camera", options.camera, "NAME", "name in the scenario (default: the first)");
+  verb.option("--intrinsics", options.intrinsics, "FX FY CX CY", "fx fy cx cy of the frame, in pixels").expected(4);
+  verb.option("--depth-unit", options.depth_unit, "M",
+              "metres in one step of grey, or in one unit of a PLY or PCD of other programs (default: 0.001 for PNG, 1 "
+              "for these)",
+              within(1e-7, 1.0));
   verb.flag("--points-in-camera", options.points_in_camera,
             "the points of a PLY or PCD are in the camera's frame, not in the world's");
   verb.option("--axes", options.axes, "NAME",
-              "of that frame: optical (z forward, y down), ros (x forward, z up) or opengl (z backward, y up)",
+              "axes of that frame: optical (z forward, y down), ros (x forward, z up) or opengl (z backward, y up)",
               one_of({"optical", "ros", "opengl"}));
   verb.option("--camera-file", options.camera_file, "FILE",
-              "optics, unit, axes and pose of the camera that took it, whatever the frame says: JSON or YAML");
+              "optics, unit, axes and pose of the camera, in JSON or YAML; overrides what the frame says");
   verb.flag("--scenario-camera", options.use_scenario_camera,
-            "pose and optics of the scenario, whatever the file says");
-  verb.option("--spread", options.spread, "M", "standard deviation of what is believed, each coordinate",
-              within(1e-4, 1.0));
-  verb.option("--spread-deg", options.spread_deg, "DEG", "the same of the rotation", within(0.01, 180.0));
+            "use pose and optics of the scenario; overrides what the file says");
+  verb.option("--spread", options.spread, "M", "deviation of each believed coordinate", within(1e-4, 1.0));
+  verb.option("--spread-deg", options.spread_deg, "DEG", "deviation of the believed rotation", within(0.01, 180.0));
   verb.option("-o,--output", options.output, "FILE.json", "the result as JSON, with the height map");
   add_json(verb, options.json);
 }

@@ -108,17 +108,16 @@ void add_picture(CLI::App& app, Action& action) {
   const Verb verb(app, action, "picture",
                   "draw an instant of a recording as PNG, or the frames of a video; needs chromium", kPictureExamples);
   PictureOptions& options = verb.runs(run_picture);
-  verb.option("recording", options.recording, "FILE.h5", "what to draw").required();
+  verb.option("recording", options.recording, "FILE.h5", "recording to draw").required();
   verb.option("-o,--output", options.output, "FILE.png", "the picture to write");
-  verb.option("--time", options.time, "SECONDS", "of the instant; without it the end", finite());
+  verb.option("--time", options.time, "SECONDS", "instant (default: the end)", finite());
   verb.option("--video", options.video, "DIR",
-              "instead of one picture: frame-000000.png ... in this new or empty folder");
-  verb.option("--fps", options.video_times.fps, "N", "pictures a second of the video", within(kSlowest, kFastest));
-  verb.option("--speed", options.video_times.speed, "FACTOR", "of the video, recorded seconds a second",
+              "write the frames of a video instead: frame-000000.png ... in this new or empty folder");
+  verb.option("--fps", options.video_times.fps, "N", "pictures per second of the video", within(kSlowest, kFastest));
+  verb.option("--speed", options.video_times.speed, "FACTOR", "recorded seconds per second of the video",
               within(kSlowest, kFastest));
-  verb.option("--from", options.video_times.from, "SECONDS", "where the video begins; without it the first frame",
-              finite());
-  verb.option("--to", options.video_times.to, "SECONDS", "where the video ends; without it the last frame", finite());
+  verb.option("--from", options.video_times.from, "SECONDS", "start of the video (default: the first frame)", finite());
+  verb.option("--to", options.video_times.to, "SECONDS", "end of the video (default: the last frame)", finite());
   verb.option("--size", options.size, "WxH", "in pixels");
   verb.option("--camera", options.view.camera, "NAME", "cell, top, side (both of the container) or tool",
               one_of({"cell", "top", "side", "tool"}));

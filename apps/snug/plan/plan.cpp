@@ -54,19 +54,19 @@ constexpr const char* kPlanExamples = R"(Examples:
   snug plan beliefs/0001-BOX027.json
   snug plan beliefs/0001-BOX027.json --json
   snug plan beliefs/0001-BOX027.json --decision-time 2
-The same belief, item and decision time come to the same plan, to the last digit.)";
+The same belief, item and decision time give the same plan, to the last digit.)";
 
 }  // namespace
 
 void add_plan(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "plan", "repeat one decision of a session and say what was tried and why it lost",
+  const Verb verb(app, action, "plan", "repeat one decision of a session and show what was tried and why it lost",
                   kPlanExamples);
   PlanOptions& options = verb.runs(run_plan);
-  verb.option("belief", options.belief, "BELIEF.json", "what was believed then: a file of `snug pack --save-belief`")
+  verb.option("belief", options.belief, "BELIEF.json", "belief at the decision: a file of `snug pack --save-belief`")
       .required();
-  verb.option("--item", options.item, "ID", "another item that is in the cell (default: the one that was decided on)");
+  verb.option("--item", options.item, "ID", "another item in the cell (default: that of the decision)");
   verb.option("--decision-time", options.decision_time, "SECONDS",
-              "for deciding where the item goes, on one core (default: as then)", within(0.0, 3600.0));
+              "time to decide where the item goes, on one core (default: that of the decision)", within(0.0, 3600.0));
   add_threads(verb, options.threads);
   add_json(verb, options.json);
 }

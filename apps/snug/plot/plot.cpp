@@ -68,7 +68,7 @@ constexpr const char* kPlotExamples = R"(Examples:
 void add_plot(CLI::App& app, Action& action) {
   const Verb verb(app, action, "plot", "draw quantities of a recording over time as SVG", kPlotExamples);
   PlotOptions& options = verb.runs(run_plot);
-  verb.option("recordings", options.recordings, "FILE.h5", "a recording, and another one to lay over it (dashed)")
+  verb.option("recordings", options.recordings, "FILE.h5", "a recording, and optionally another to overlay (dashed)")
       .required();
   verb.option("--what", options.what, "WORD",
               "wrench (of the cup), flange (wrench on it), tool (position), error (to the command), speed, cup (length "
@@ -76,10 +76,10 @@ void add_plot(CLI::App& app, Action& action) {
               "of the joints' and of the hold), pose:BODY; several are drawn one below the other")
       .required();
   verb.option("-o,--output", options.output, "FILE.svg", "the drawing to write").required();
-  verb.option("--width", options.width_mm, "MM", "of the drawing; one column of a paper is about 85", positive());
-  verb.option("--height", options.height_mm, "MM", "of each pair of axes", positive());
+  verb.option("--width", options.width_mm, "MM", "width of the drawing; one column of a paper is about 85", positive());
+  verb.option("--height", options.height_mm, "MM", "height of each pair of axes", positive());
   verb.option("--urdf", options.urdf, "FILE.urdf",
-              "whose joints' limits are meant (default: the file that its scenario names)");
+              "arm whose joint limits are used (default: the file that the scenario names)");
   add_selection(verb, options.selection);
 }
 

@@ -44,10 +44,10 @@ constexpr const char* kReportExamples = R"(Examples:
 }  // namespace
 
 void add_report(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "report", "make one HTML file of a recording: replay, events of each box, plots",
+  const Verb verb(app, action, "report", "write one HTML file from a recording: replay, events of each box, plots",
                   kReportExamples);
   ReportOptions& options = verb.runs(run_report);
-  verb.option("recordings", options.recordings, "FILE.h5", "a recording, and another one to lay over it").required();
+  verb.option("recordings", options.recordings, "FILE.h5", "a recording, and optionally another to overlay").required();
   verb.option("-o,--output", options.output, "FILE.html", "the page to write").required();
   add_selection(verb, options.selection);
   add_urdf(verb, options.urdf);

@@ -76,8 +76,8 @@ int run_script(const RunOptions& options) {
 }
 
 constexpr const char* kRunExamples =
-    R"(Outputs 0 and 1 are vacuum and blow-off, input 0 says that the vacuum is reached, input 1 that a box stands at the aligner.
-Popups are closed at once. Exit code 0: the program came to its end; 1: it failed, was stopped, or the cell did; 2: the input cannot be used.
+    R"(Outputs 0 and 1 are vacuum and blow-off. Input 0 is on when the vacuum is reached, input 1 when a box stands at the aligner.
+Popups are closed at once. Exit code 0: the program reached its end; 1: it or the cell failed or stopped; 2: the input cannot be used.
 Examples:
   snug export program.csv --scenario scenarios/box-demonstrator.yaml --format urscript -o program.script
   snug run program.script scenarios/box-demonstrator.yaml --sequence 1
@@ -93,7 +93,7 @@ void add_run(CLI::App& app, Action& action) {
   verb.option("program", options.program, "PROGRAM.script", "URScript program").required();
   add_cell(verb, cell);
   verb.option("--skip", cell.skipped, "BOXES",
-              "boxes of the sequence that do not come, with commas between: those that the session left out")
+              "boxes of the sequence that do not come, separated by commas: those that the session left out")
       .delimiter(',');
   verb.option("--until", options.until, "SECONDS", "stop the program at this simulated time", within(0.0, 86400.0));
 }

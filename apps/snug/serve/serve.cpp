@@ -109,65 +109,65 @@ constexpr const char* kServeExamples = R"(Examples:
   snug serve scenarios/box-demonstrator.yaml --ur 127.0.0.1 --sequence 1 --plant-seed 1 --observers tcp://127.0.0.1:5555
   snug keys keys
   snug serve scenarios/box-demonstrator.yaml --click tcp://0.0.0.0:5555 --keys keys   # for other machines
-One Control is one step, unless --async. Ctrl-C ends it. docs/click.md describes the protocol as it is served.)";
+Each Control advances one step, unless --async is given. Ctrl-C ends the server. docs/click.md describes the protocol.)";
 
 OptionRow add_served_cell(const Verb& verb, ServeOptions& options) {
   const OptionRow model = add_cell(verb, options);
-  verb.option("--robot", options.robot, "NAME", "robot of the scenario that is driven; absent: the one there is");
+  verb.option("--robot", options.robot, "NAME", "robot of the scenario to drive (default: its only one)");
   add_physics(verb, options.physics);
   return model;
 }
 
 void add_served_names(const Verb& verb, ServeOptions& options) {
   verb.option("--control", options.controls, "KINDS",
-              "what joints are commanded by: one for all, or one for each, with commas between",
+              "command of the joints: one for all, or one for each, separated by commas",
               one_of({"position", "velocity", "torque"}))
       .delimiter(',');
-  verb.option("--robot-object", options.cell.robot_object, "NAME", "name of the robot's object; absent: the robot's");
+  verb.option("--robot-object", options.cell.robot_object, "NAME", "name of the robot's object (default: the robot's)");
   verb.option("--force-sensor", options.cell.force_sensor, "NAME", "name of the force/torque sensor");
   verb.option("--vacuum-event", options.cell.vacuum_event, "NAME", "name of the event that switches the vacuum");
   verb.option("--blow-off-event", options.cell.blow_off_event, "NAME", "name of the event that switches the blow-off");
-  verb.option("--rpy", options.rpy, "ORDER",
-              "fixed axes about which roll, pitch and yaw turn, first to last; xyz as URDF",
+  verb.option("--rpy", options.rpy, "ORDER", "fixed axes of roll, pitch and yaw, first to last; xyz as in URDF",
               one_of({"xyz", "xzy", "yxz", "yzx", "zxy", "zyx"}));
-  verb.flag("--box-velocities", options.cell.velocities, "boxes tell their velocities, too");
-  verb.flag("--joint-forces", options.cell.joint_forces, "joints tell the forces in them, too");
+  verb.flag("--box-velocities", options.cell.velocities, "boxes report their velocities as well");
+  verb.flag("--joint-forces", options.cell.joint_forces, "joints report their forces as well");
 }
 
 void add_served_time(const Verb& verb, ServeOptions& options) {
-  verb.flag("--async", options.server.is_async, "run freely in real time; Controls act from the next step on");
+  verb.flag("--async", options.server.is_async,
+            "run in real time without waiting for the controller; Controls act from the next step on");
   verb.option("--speed", options.server.speed, "FACTOR",
-              "simulated seconds a second: of --async (default 1), or the most that Controls make", within(1e-3, 1e3));
-  verb.option("--batch", options.batch, "SECONDS", "reset the simulator each time so much simulated time is over",
+              "simulated seconds per second: with --async (default 1), otherwise the limit for Controls",
+              within(1e-3, 1e3));
+  verb.option("--batch", options.batch, "SECONDS", "reset the simulator after each such period of simulated time",
               positive());
   verb.flag("--step-by-step", options.server.step_by_step,
-            "steps wait for lines on stdin: an empty one allows one, a number so many, c all, r resets");
+            "wait for lines on stdin before steps: an empty line allows one, a number that many, c all, r resets");
   verb.flag("--run-at-once", options.runs_at_once,
-            "with --async: the cell runs before there is a controller, the robot at rest");
-  verb.option("--stop-after", options.server.stop_after, "SECONDS", "end when so much simulated time is over",
-              positive());
+            "with --async: run the cell before a controller connects, the robot at rest");
+  verb.option("--stop-after", options.server.stop_after, "SECONDS", "end after this simulated time", positive());
   verb.flag("--once", options.once,
-            "end when the first controller has left, or its run has failed; a Reset begins a run anew");
+            "end when the first controller has left or its run has failed; a Reset starts a new run");
 }
 
 void add_served_ur(const Verb& verb, UrOptions& ur, const OptionRow& model) {
   const OptionRow host = verb.option("--ur", ur.host, "ADDRESS",
-                                     "be a controller of Universal Robots at this address instead: RTDE 30004, "
+                                     "act as a controller of Universal Robots at this address instead: RTDE 30004, "
                                      "dashboard 29999, primary 30001, secondary 30002, real-time 30003 (docs/ur.md)");
   host.excludes({"--click", "--keys", "--async", "--batch", "--step-by-step", "--run-at-once", "--stop-after"});
   model.needs(host);
-  verb.option("--ur-port-offset", ur.port_offset, "N", "added to each of its five ports", whole(0, 35531)).needs(host);
+  verb.option("--ur-port-offset", ur.port_offset, "N", "number added to its five ports", whole(0, 35531)).needs(host);
   verb.option("--ur-clients", ur.clients, "ADDRESSES",
-              "addresses of other machines that may move the robot, with commas between, or `any`; an address that "
-              "other machines can reach needs it: clients of a UR show no keys")
+              "addresses of other machines that may move the robot, separated by commas, or `any`; required for an "
+              "address that other machines can reach, since clients of a UR have no keys")
       .delimiter(',')
       .needs(host);
   verb.option("--ur-programs", ur.programs, "FOLDER",
-              "folder of the programs that the dashboard may load: NAME.script there is NAME.urp to clients")
+              "folder of programs that the dashboard may load: clients see NAME.script as NAME.urp")
       .needs(host);
   verb.option("--observers", ur.observers, "ADDRESS",
-              "let observers on this machine see where the boxes are, over CLICK: tcp://127.0.0.1:PORT or ipc://PATH; "
-              "RTDE tells nothing of boxes (`snug pack --observe`)")
+              "show observers on this machine where the boxes are, over CLICK: tcp://127.0.0.1:PORT or ipc://PATH; "
+              "RTDE does not report boxes (`snug pack --observe`)")
       .needs(host);
 }
 
@@ -177,41 +177,37 @@ OptionRow add_cell(const Verb& verb, ServeOptions& options) {
   add_robot_scenario(verb, options.scenario);
   add_scenario_changes(verb, options.changes);
   verb.option("--sequence", options.sequence, "NAME",
-              "item sequence whose boxes come to the aligner; absent: the first");
-  verb.option(
-      "--plant-seed", options.plant_seed, "N",
-      "the cell is the plant that `snug pack --plant-seed N` packs: drawn from the scenario's `uncertainty` (0: "
-      "exactly what the scenario says), cup with phases, more sensors, protective stops that can be "
-      "acknowledged",
-      whole(0));
+              "item sequence whose boxes come to the aligner (default: the first)");
+  verb.option("--plant-seed", options.plant_seed, "N",
+              "use the plant that `snug pack --plant-seed N` packs: drawn from the scenario's `uncertainty` (0: "
+              "exactly the scenario), a cup with phases, more sensors, protective stops that can be acknowledged",
+              whole(0));
   verb.option("-o,--record", options.record, "FILE.h5",
-              "write a recording; those of further runs have a number: run-2.h5");
+              "write a recording; those of further runs get a number: run-2.h5");
   add_json(verb, options.json);
   return verb.option(
       "--model", options.ur.model, "MODEL",
-      "of a controller of Universal Robots: ur10 runs at 125 Hz, ur3e, ur5e, ur10e, ur16e, ur20 and ur30 at 500 Hz",
+      "model of the UR controller: ur10 runs at 125 Hz; ur3e, ur5e, ur10e, ur16e, ur20 and ur30 at 500 Hz",
       one_of({"ur10", "ur3e", "ur5e", "ur10e", "ur16e", "ur20", "ur30"}));
 }
 
 void add_serve(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "serve", "let a controller in another program drive the cell (CLICK), or be a UR",
-                  kServeExamples);
+  const Verb verb(app, action, "serve",
+                  "serve the simulated cell to controllers in other programs, over CLICK or as a UR", kServeExamples);
   ServeOptions& options = verb.runs(run_serve);
   verb.option("--click", options.server.endpoint, "ADDRESS", "address to serve at: tcp://HOST:PORT or ipc://PATH");
   verb.option("--keys", options.keys, "DIR",
-              "let in only who has a key of this folder (`snug keys DIR` makes it), and encrypt what is said; an "
-              "address that other machines can reach needs it");
+              "admit only clients with a key of this folder (`snug keys DIR` makes it), and encrypt; required for an "
+              "address that other machines can reach");
   verb.option("--lease", options.server.lease, "SECONDS",
-              "a controller that says nothing for longer gives its place to the next one that commands",
-              within(0.1, 1e6));
+              "a controller that is silent for longer loses its place to the next one that commands", within(0.1, 1e6));
   const OptionRow model = add_served_cell(verb, options);
   add_served_names(verb, options);
   add_served_time(verb, options);
   add_served_ur(verb, options.ur, model);
-  verb.flag("--view", options.shows, "show the run that goes on in the browser, one after the other");
-  verb.option("--port", options.page.port, "N", "port of the page on this machine; 0 any that is free",
-              whole(0, 65535));
-  verb.flag("--no-open", options.is_quiet, "open no browser, only say the page's address");
+  verb.flag("--view", options.shows, "show the present run in the browser");
+  verb.option("--port", options.page.port, "N", "port of the page on this machine; 0: any free one", whole(0, 65535));
+  verb.flag("--no-open", options.is_quiet, "do not open a browser, only print the address of the page");
 }
 
 }  // namespace snug::app

@@ -96,8 +96,8 @@ constexpr const char* kShakeExamples = R"(Profiles:
   tilt        slowly by the angle whose tangent is --level, to all four sides
   FILE.csv    a head of time_s and any of ax, ay, az (m/s2, of the container along its axes), roll_deg, pitch_deg; then rows
 Every motion begins with the load at rest, once with the scenario's friction and once with each draw of its uncertainty;
-the worst counts. Holds: film draws each box back to where it stood by 2 N a millimetre, by 150 N at most; straps press the
-boxes that carry no other down by 600 N together. The container itself stands fast on what carries it.
+the worst counts. Holds: film pulls each box back to where it stood with 2 N per millimetre, at most 150 N; straps press the
+boxes that carry no other down with 600 N in total. The container itself is fixed to what carries it.
 Exit code 0: the load holds; 1: a box shifts, tips or falls; 2: the input cannot be used.
 Examples:
   snug shake scenarios/demo-placements.yaml --scenario scenarios/box-demonstrator.yaml --profile conveyor
@@ -107,24 +107,25 @@ Examples:
 }  // namespace
 
 void add_shake(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "shake", "drive a packed container: say which boxes shift, tip or fall", kShakeExamples);
+  const Verb verb(app, action, "shake", "shake a packed container; report boxes that shift, tip or fall",
+                  kShakeExamples);
   ShakeOptions& options = verb.runs(run_shake);
   verb.option("load", options.load, "RUN.h5|LOAD",
-              "recording of a packed container (its last frame), or a list of placements")
+              "recording of a packed container (its last frame is used), or a list of placements")
       .required();
   verb.option("--scenario", options.scenario, "SCENARIO.yaml", "scenario of the placements; a recording has its own");
   add_scenario_changes(verb, options.changes);
-  verb.option("--profile", options.profile, "NAME|FILE.csv", "how it is driven, see below").required();
-  verb.option("--level", options.level, "G", "of eumos40509 and tilt, in g", within(0.01, 2.0));
-  verb.option("--hold", options.hold, "WHAT", "what holds the load beside walls and friction",
+  verb.option("--profile", options.profile, "NAME|FILE.csv", "how the container moves, see below").required();
+  verb.option("--level", options.level, "G", "level of eumos40509 and tilt, in g", within(0.01, 2.0));
+  verb.option("--hold", options.hold, "WHAT", "what holds the load besides walls and friction",
               one_of({"none", "film", "straps"}));
-  verb.option("--draws", options.draws, "N", "of friction, from the scenario's uncertainty, beside its own",
+  verb.option("--draws", options.draws, "N", "draws of friction from the scenario's uncertainty, besides its own",
               whole(0, 1000));
-  verb.option("--seed", options.seed, "N", "of the draws", whole(0));
-  verb.option("--max-shift", options.shift, "MM", "that a box may move, at any time", within(0.1, 10000.0));
-  verb.option("--max-tilt", options.tilt, "DEGREES", "that a box may tip, at any time", within(0.1, 180.0));
+  verb.option("--seed", options.seed, "N", "seed of the draws", whole(0));
+  verb.option("--max-shift", options.shift, "MM", "largest allowed shift of a box, at any time", within(0.1, 10000.0));
+  verb.option("--max-tilt", options.tilt, "DEGREES", "largest allowed tilt of a box, at any time", within(0.1, 180.0));
   verb.option("--time-step", options.time_step, "SECONDS",
-              "of the simulation (default: that of the scenario's rehearsals)", within(1e-5, 0.02));
+              "time step of the simulation (default: that of the scenario's rehearsals)", within(1e-5, 0.02));
   add_threads(verb, options.threads);
   verb.option("--page", options.page, "FILE.html", "write a page with the worst moment");
   add_json(verb, options.json);

@@ -177,8 +177,9 @@ void add_program_options(const Verb& verb, SimulateOptions& options) {
   verb.option("--program", options.program, "FILE.csv", "waypoint file (13 columns) to run; needs --sequence");
   verb.option("--sequence", options.sequence, "NAME", "item sequence of the scenario that the program packs");
   add_motion_words(verb, options.motion);
-  verb.option("--robot", options.robot, "NAME",
-              "move the tool with the joints of the scenario's robot, such as ur10; absent: the tool moves by itself");
+  verb.option(
+      "--robot", options.robot, "NAME",
+      "move the tool with the joints of the scenario's robot, such as ur10 (default: the tool moves by itself)");
   add_corrections(verb, options.corrections);
 }
 
@@ -188,12 +189,12 @@ void add_physics_options(const Verb& verb, SimulateOptions& options) {
   add_physics(verb, options.physics);
   verb.option(
       "--threads", options.threads, "N",
-      "threads of repeated runs or of a scene of many bodies; the result does not depend on it (default: all cores)",
+      "threads for repeated runs or for a scene of many bodies; they do not change the result (default: all cores)",
       whole(1, kMostThreads));
 }
 
 void add_simulate(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "simulate", "run a scenario and say what became of every box", kSimulateExamples);
+  const Verb verb(app, action, "simulate", "run a scenario and report what happened to every box", kSimulateExamples);
   SimulateOptions& options = verb.runs(run_simulate);
   add_scenario(verb, options.scenario);
   add_program_options(verb, options);
@@ -201,13 +202,13 @@ void add_simulate(CLI::App& app, Action& action) {
   const OptionRow repeated =
       verb.option("--monte-carlo", options.monte_carlo, "N",
                   "run the program N times in cells drawn from the scenario's `uncertainty`", whole(1, kMostRuns));
-  verb.option("--draw", options.draw, "N", "the N-th of these runs by itself, such as the worst, to record it",
+  verb.option("--draw", options.draw, "N", "run only the N-th of these draws, for example to record the worst",
               whole(1, kMostRuns))
       .excludes(repeated);
   verb.option("-o,--record", options.record, "FILE.h5", "write a recording");
   verb.option("--resume", options.resume, "FILE.h5",
-              "go on from a recording of the same bodies, from its last frame or --resume-at; not with --program");
-  verb.option("--resume-at", options.resume_at, "SECONDS", "instant of the recording to go on from", positive());
+              "continue a recording of the same bodies from its last frame or from --resume-at; not with --program");
+  verb.option("--resume-at", options.resume_at, "SECONDS", "instant from which to continue", positive());
   verb.option("--csv", options.csv, "FILE.csv", "write one table, a row per recorded instant");
   add_json(verb, options.json);
 }

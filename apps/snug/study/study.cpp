@@ -147,7 +147,7 @@ int run_study_report(const StudyOptions& options) {
 
 constexpr const char* kStudyHelp =
     R"(The file names a verb, its options and factors: options and scenario keys that change from row to row
-(docs/studies.md). Every row is a function of its index. What is done is not done again: the same words after a kill go on.
+(docs/studies.md). Every row depends only on its index. Finished rows are not computed again: after a kill the same command continues.
 Examples:
   snug study scenarios/examples/friction.yaml           # run what is missing, on all cores
   snug study scenarios/examples/friction.yaml --slurm   # write and submit an array of jobs
@@ -173,7 +173,7 @@ int run_row(const std::vector<std::string>& words, int threads) {
 }
 
 void add_study(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "study", "many runs over a design of scenario keys and options, here or on a cluster",
+  const Verb verb(app, action, "study", "run a design over scenario keys and options, here or on a cluster",
                   kStudyHelp);
   const auto add_file = [](const Verb& to, StudyOptions& options, bool is_required) {
     to.option("study", options.file, "STUDY.yaml", "file of the study").required(is_required);
@@ -181,29 +181,28 @@ void add_study(CLI::App& app, Action& action) {
   };
   StudyOptions& options = verb.runs(run_study);
   add_file(verb, options, false);
-  verb.option("--threads", options.threads, "N",
-              "rows at a time; the result does not depend on it (default: all cores)", whole(1, kMostThreads));
-  verb.option("--chunks", options.chunks, "A-B", "only these tables, from 0; jobs of an array have theirs");
-  const OptionRow slurm =
-      verb.flag("--slurm", options.slurm, "write an array of jobs for what is missing and submit it");
+  verb.option("--threads", options.threads, "N", "rows at a time; they do not change the result (default: all cores)",
+              whole(1, kMostThreads));
+  verb.option("--chunks", options.chunks, "A-B", "compute only these tables, counted from 0");
+  const OptionRow slurm = verb.flag("--slurm", options.slurm, "write a job array for the missing rows and submit it");
   verb.option("--ray", options.ray, "ADDRESS",
-              "hand what is missing to a Ray cluster and wait: its address, auto, or local for this machine alone")
+              "compute the missing rows on a Ray cluster and wait: its address, auto, or local for this machine alone")
       .excludes(slurm);
   verb.flag("--dry-run", options.dry_run, "with --slurm or --ray: write the script, but do not run it");
   add_json(verb, options.json);
-  const Verb status = verb.part("status", "how much of a study is done", "", true);
+  const Verb status = verb.part("status", "report how much of a study is done", "", true);
   StudyOptions& of_status = status.runs(run_study_status);
   add_file(status, of_status, true);
   add_json(status, of_status.json);
-  const Verb merge = verb.part("merge", "all rows that are done as one table, in the order of their indices", "", true);
+  const Verb merge = verb.part("merge", "write all finished rows as one table, ordered by index", "", true);
   StudyOptions& of_merge = merge.runs(run_study_merge);
   add_file(merge, of_merge, true);
   merge.option("-o,--output", of_merge.output, "FILE.csv|FILE.h5", "table, CSV or HDF5 by its ending").required();
-  const Verb report = verb.part("report", "a page: main effects, interactions, quantiles, worst rows", "", true);
+  const Verb report = verb.part("report", "write a page: main effects, interactions, quantiles, worst rows", "", true);
   StudyOptions& of_report = report.runs(run_study_report);
   add_file(report, of_report, true);
   report.option("-o,--output", of_report.output, "FILE.html", "page").required();
-  report.option("--worst", of_report.worst, "N", "rows listed as worst, of each number", whole(0, 1000));
+  report.option("--worst", of_report.worst, "N", "how many of the worst rows to list for each output", whole(0, 1000));
 }
 
 }  // namespace snug::app

@@ -51,21 +51,21 @@ int run_ui(const UiOptions& options) {
 constexpr const char* kUiExamples = R"(Examples:
   snug ui                                            # the folder that you are in
   snug ui . --no-open                                # prints the address only
-The folder holds plain files that all other verbs read and write: scenarios (.yaml), orders (.csv), and of each run its
-command with what it printed (.txt), its log (.jsonl), recording (.h5), program (.program.csv) and, while it goes on,
+The folder holds plain files that all other verbs read and write: scenarios (.yaml), orders (.csv), and for each run its
+command with its output (.txt), its log (.jsonl), recording (.h5), program (.program.csv) and, while it runs,
 frames (.live).
-Ctrl-C ends the page and interrupts its runs. The page is served to this machine only, and to who knows the printed
-address with its token. Addresses for other programs: docs/ui.md.)";
+Ctrl-C ends the page and interrupts its runs. Only this machine can open the page, with the printed address and its
+token. docs/ui.md has the addresses for other programs.)";
 
 }  // namespace
 
 void add_ui(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "ui", "a page to work in: items, cell, runs of a folder, in the browser", kUiExamples);
+  const Verb verb(app, action, "ui", "open a page in the browser: edit items and cells, run, compare", kUiExamples);
   UiOptions& options = verb.runs(run_ui);
-  verb.option("folder", options.folder, "DIR", "where scenarios, items and runs are");
-  verb.option("--port", options.port, "N", "port to serve at; 0 any that is free", whole(0, 65535));
-  verb.option("--runs", options.runs, "N", "runs at the same time; the others wait", whole(1, kMostThreads));
-  verb.flag("--no-open", options.is_quiet, "open no browser, only say the address");
+  verb.option("folder", options.folder, "DIR", "folder of scenarios, items and runs");
+  verb.option("--port", options.port, "N", "port to serve at; 0: any free one", whole(0, 65535));
+  verb.option("--runs", options.runs, "N", "how many runs at the same time; others wait", whole(1, kMostThreads));
+  verb.flag("--no-open", options.is_quiet, "do not open a browser, only print the address");
 }
 
 }  // namespace snug::app

@@ -40,8 +40,8 @@ int run_ur_check(const UrCheckOptions& options) {
 }
 
 constexpr const char* kUrCheckHelp =
-    R"(Reads the primary port, RTDE and the dashboard; moves nothing and switches nothing. Exit code 0: it fits; 1: something
-does not, with what to set; 2: nobody answers there, or the input cannot be used.
+    R"(check reads the primary port, RTDE and the dashboard. It moves and switches nothing. Exit code 0: the UR fits; 1: something
+does not, and what to set is printed; 2: nobody answers, or the input cannot be used.
 Example:
   snug serve scenarios/box-demonstrator.yaml --ur 127.0.0.1     # a simulated one, in another terminal
   snug ur check 127.0.0.1 --scenario scenarios/box-demonstrator.yaml)";
@@ -49,19 +49,19 @@ Example:
 }  // namespace
 
 void add_ur(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "ur", "ask a robot of Universal Robots",
-                  "`snug ur check --help` says what is read. Example:\n  snug ur check --help");
-  const Verb part = verb.part("check", "what of a UR does not fit the scenario's robot, and what to set", kUrCheckHelp);
+  const Verb verb(app, action, "ur", "query a robot of Universal Robots",
+                  "`snug ur check --help` says what it reads. Example:\n  snug ur check --help");
+  const Verb part =
+      verb.part("check", "report what of a UR does not fit the scenario's robot, and what to set", kUrCheckHelp);
   UrCheckOptions& options = part.runs(run_ur_check);
-  part.option(
-          "host", options.address, "HOST",
-          "IPv4 address or name of the controller; HOST:N, with N added to its ports; or ur:// before either, as of "
-          "`snug pack --plant`")
+  part.option("host", options.address, "HOST",
+              "IPv4 address or name of the controller; HOST:N adds N to its ports; ur:// may stand before either, as "
+              "in `snug pack --plant`")
       .required();
-  part.option("--scenario", options.scenario, "SCENARIO.yaml", "whose robot it is to be");
+  part.option("--scenario", options.scenario, "SCENARIO.yaml", "scenario with the robot to compare with");
   add_scenario_changes(part, options.changes);
   part.option("--tolerance", options.tolerance_mm, "MM",
-              "how far the tool's end may be off by the controller's kinematics, and the TCP", positive());
+              "how far the tool's end may be off, by the controller's kinematics and by its TCP", positive());
   part.option("--timeout", options.patience, "SECONDS", "how long to wait for an answer", within(0.01, 1e5));
   add_json(part, options.json);
 }

@@ -63,21 +63,23 @@ Examples:
 }  // namespace
 
 void add_validate(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "validate", "how far a simulation is from the measurements of its experiment",
+  const Verb verb(app, action, "validate", "compare a simulation with the measurements of its experiment",
                   kValidateHelp);
   ValidateOptions& options = verb.runs(run_validate);
   verb.option("--simulated", options.simulated, "RECORDING.h5", "recording of the run").required();
   verb.option("--measured", options.measured, "ARCHIVE.h5|LOG.csv",
               "archive with the repetitions, or one log with names of mc_rtc")
       .required();
-  verb.option("-o,--output", options.page, "FILE.html", "a page with all tables and the figures of the key moments");
+  verb.option("-o,--output", options.page, "FILE.html",
+              "write a page with all tables and the figures of the key moments");
   verb.option("--svg", options.svg, "FOLDER",
-              "folder for the figures of all boxes, poses and wrenches (made if needed)");
-  verb.option("--csv", options.csv, "FILE.csv", "a row for each box, repetition and form");
+              "write the figures of all boxes, poses and wrenches into this folder (created if missing)");
+  verb.option("--csv", options.csv, "FILE.csv", "write a row for each box, repetition and form");
   verb.option("--windows", options.windows, "FILE.csv",
-              "spans to compare, instead of those found: body,start_s,end_s[,sequence]");
-  verb.option("--shift", options.shifts, "SOURCE=SECONDS",
-              "what a source's clock (mocap, ft, robot) shows at time 0 of the simulation, instead of finding it");
+              "time spans to compare, instead of those found: body,start_s,end_s[,sequence]");
+  verb.option(
+      "--shift", options.shifts, "SOURCE=SECONDS",
+      "time that the clock of a source (mocap, ft, robot) shows at time 0 of the simulation, instead of finding it");
   add_json(verb, options.json);
 }
 

@@ -117,8 +117,8 @@ constexpr const char* kViewExamples = R"(Examples:
   snug view --live scenarios/box-demonstrator.yaml --program program.csv --sequence 1 -o run.h5
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555
   snug view --live scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555      # in another terminal: looks on
-Ctrl-C ends it. The page is served to this machine only, unless --host names another of its addresses.
-Who opens that has to know the whole address that is printed, with its token.)";
+Ctrl-C ends view. Only this machine can open the page, unless --host names another of its addresses.
+Readers on other machines need the whole printed address, with its token.)";
 
 }  // namespace
 
@@ -128,25 +128,26 @@ void announce(const std::string& address, bool opens_browser) {
 }
 
 void add_view(CLI::App& app, Action& action) {
-  const Verb verb(app, action, "view", "show a recording, or a simulation that goes on, in the browser", kViewExamples);
+  const Verb verb(app, action, "view", "show a recording or a running simulation in the browser", kViewExamples);
   ViewOptions& options = verb.runs(run_view);
-  verb.option("recordings", options.recordings, "FILE.h5", "a recording, and another one to lay over it");
-  verb.option("--live", options.run.scenario, "SCENARIO.yaml", "run this scenario and show it while it runs");
+  verb.option("recordings", options.recordings, "FILE.h5", "a recording, and optionally another to overlay");
+  verb.option("--live", options.run.scenario, "SCENARIO.yaml", "run this scenario and show it live");
   verb.option("--click", options.click, "ADDRESS",
-              "with --live: show the cell that `snug serve SCENARIO.yaml --click ADDRESS` serves, while others drive "
-              "it; with --sequence if there");
+              "with --live: show the cell that `snug serve SCENARIO.yaml --click ADDRESS` serves while others drive "
+              "it; give --sequence if the server has it");
   add_client(verb, options.client, "--click-timeout");
   add_program_options(verb, options.run);
   add_physics_options(verb, options.run);
   verb.option("-o,--record", options.run.record, "FILE.h5", "write a recording of the live run");
-  verb.option("--speed", options.speed, "FACTOR", "of the live run, simulated seconds a second; 0 as fast as it goes");
+  verb.option("--speed", options.speed, "FACTOR", "simulated seconds per second; 0: as fast as possible");
   verb.flag("--paused", options.is_paused, "start the live run paused");
-  verb.option("--host", options.server.host, "ADDRESS",
-              "address to serve at; if it is not loopback, who has the printed address with its token can look in");
+  verb.option(
+      "--host", options.server.host, "ADDRESS",
+      "address to serve at; if it is not loopback, everybody who has the printed address with its token can watch");
   verb.option("--name", options.server.names, "NAME",
-              "a name by which browsers ask for it, besides this machine's own: behind a proxy, in a container");
-  verb.option("--port", options.server.port, "N", "port to serve at; 0 any that is free");
-  verb.flag("--no-open", options.is_quiet, "open no browser, only say the address");
+              "an additional host name that browsers use, behind a proxy or in a container");
+  verb.option("--port", options.server.port, "N", "port to serve at; 0: any free one");
+  verb.flag("--no-open", options.is_quiet, "do not open a browser, only print the address");
   add_selection(verb, options.selection);
   add_urdf(verb, options.urdf);
 }

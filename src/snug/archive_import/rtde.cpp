@@ -148,7 +148,8 @@ class RtdeReader {
       robot.columns.push_back(std::move(columns_[i]));
     }
     robot.tool = std::move(tool_poses_);
-    if (tool_) imported.remarks.emplace_back("the tool is the TCP of the controller: is that E, the gripper's end?");
+    if (tool_)
+      imported.remarks.emplace_back("the tool is the TCP of the controller: check that this is E, the gripper's end");
     if (repeated_ > 0) imported.remarks.push_back(fmt::format("{} rows with the time of the row before", repeated_));
     if (wrench_) imported.recording.force_torque = {std::move(wrench_times_), std::move(wrenches_), {}};
     if (!wrench_ && find_six(all_, "ft_raw_wrench"))

@@ -17,7 +17,7 @@ record::Event event_of(const LostBody& lost) {
   return {lost.time,
           "out of cell",
           lost.name,
-          fmt::format("more than 1 km from the origin, at {:.0f} m/s: goes on without it", lost.v_W.norm()),
+          fmt::format("more than 1 km from the origin, at {:.0f} m/s: the run continues without it", lost.v_W.norm()),
           {{"x_m", lost.p_W.x()}, {"y_m", lost.p_W.y()}, {"z_m", lost.p_W.z()}, {"speed_m_s", lost.v_W.norm()}}};
 }
 

@@ -169,7 +169,7 @@ void Simulation::feel(const motion::PreparedProgram& plan, CellState& state, con
 }
 
 ArmReading Simulation::read_still(const CellState& state) const {
-  SNUG_CHECK(arm_ != nullptr && state.arm, "a cell without a robot has no arm to read");
+  SNUG_CHECK(arm_ != nullptr && state.arm, "a cell with a robot, to read its arm");
   ArmState arm = *state.arm;
   ArmLoads loads;
   ArmReading reading;

@@ -15,12 +15,11 @@ double worst_over_allowed(const PassedLimit& passed) { return passed.worst / pas
 
 const char* remedy_of(ContactLimit limit) {
   if (limit == ContactLimit::RigidDepth) {
-    return "what presses them is held back by nothing, as a kinematic body, or too heavy or fast for the time step: "
-           "end "
-           "its way earlier, make time_step smaller, or the masses more alike";
+    return "the body that presses them is kinematic, so nothing holds it back, or it is too heavy or fast for the time "
+           "step: end its path earlier, or use a smaller time_step or more similar masses";
   }
   return "a stiffer pair (contacts), more damping, a lower speed or a lighter body keeps them apart; a contact deeper "
-         "than half a wall pushes out on its other side";
+         "than half a wall pushes the body out on the other side";
 }
 
 std::string name_of(physics::BodyId id, const CellWorld& world) {
@@ -143,8 +142,8 @@ std::vector<std::string> describe_warnings(const SolverSummary& summary) {
   }
   if (worst == nullptr) return warnings;
   warnings.push_back(
-      fmt::format("{} of {} steps were not solved; worst: {:.2g} m/s at t = {:.3f} s between '{}' and '{}': forces "
-                  "and motions then are rough; a smaller time_step or more alike masses help (limit: "
+      fmt::format("{} of {} steps were not solved; worst: {:.2g} m/s at t = {:.3f} s between '{}' and '{}': forces and "
+                  "motions of these steps are inaccurate; a smaller time_step or more similar masses help (limit: "
                   "solver.contact_limits.residual, {:.3g} m/s)",
                   summary.not_converged, summary.steps, worst->worst, worst->worst_time, worst->body_a, worst->body_b,
                   worst->allowed));
@@ -156,8 +155,7 @@ Failure find_failure(const CellWorld& world, const physics::WorldState& state, c
   if (report.status == physics::StepStatus::Converged || report.status == physics::StepStatus::NotConverged) return {};
   if (report.status == physics::StepStatus::TooManyPairs) {
     return {FailureKind::TooManyPairs,
-            fmt::format("t = {:.3f} s: more pairs of bodies near each other than there is room for",
-                        state.time(world.model))};
+            fmt::format("t = {:.3f} s: too many pairs of bodies are near each other", state.time(world.model))};
   }
   const bool is_finite = report.status != physics::StepStatus::NotFinite;
   std::string text = fmt::format("t = {:.3f} s: {} of body '{}'", state.time(world.model),

@@ -48,7 +48,7 @@ Expected<T, std::string> expect(Expected<Message, std::string> answer, const cha
   if (const auto* error = std::get_if<Error>(&*answer))
     return Reason("the simulator says: " + printable(error->text, kLongestMessage));
   if (std::holds_alternative<Reset>(*answer)) return Reason("the simulator was reset");
-  return Reason(fmt::format("the simulator answered {} by a {}", what, name_of(*answer)));
+  return Reason(fmt::format("the simulator answered {} with a {}", what, name_of(*answer)));
 }
 
 }  // namespace
@@ -154,7 +154,7 @@ Expected<Handshake, std::string> Client::shake_hands() {
     return Reason(fmt::format("the simulator speaks version {}, not {}", handshake->version, kVersion));
   }
   if (const std::string bad = find_bad_name(*handshake); !bad.empty()) {
-    return Reason(fmt::format("the simulator names something '{}', which is no name", printable(bad, 100)));
+    return Reason(fmt::format("the simulator uses the name '{}', which is invalid", printable(bad, 100)));
   }
   for (const auto& [name, object] : handshake->objects) {
     if (object.controls.size() != object.control_types.size()) {

@@ -122,7 +122,7 @@ std::string JointLink::take(const Client::Sensed& sensed) {
   const ObjectSensors& robot = found->second;
   const std::size_t n = handshake_.objects[robot_name_].joints.size();
   if (robot.angles.size() != n || robot.velocities.size() != n) {
-    return fmt::format("'{}' has {} joints but senses {} angles and {} speeds", robot_name_, n, robot.angles.size(),
+    return fmt::format("'{}' has {} joints but sends {} angles and {} speeds", robot_name_, n, robot.angles.size(),
                        robot.velocities.size());
   }
   const auto count = static_cast<Eigen::Index>(joints_.size());
@@ -135,7 +135,7 @@ std::string JointLink::take(const Client::Sensed& sensed) {
     measured.qd[static_cast<Eigen::Index>(j)] = robot.velocities[joints_[j].sensor];
   }
   if (!measured.q.allFinite() || !measured.qd.allFinite() || !std::isfinite(sensor->time)) {
-    return "the simulator senses what are no numbers";
+    return "the simulator sent sensor values that are not numbers";
   }
   measured_ = std::move(measured);
   last_ = sensor;

@@ -88,7 +88,7 @@ std::string settle_json_line(std::string_view line, int line_number, std::string
   if (reader.content().contains("gravity")) load.gravity_W.z() = -reader.number_at_least_zero("gravity");
   const SettleResult result = settle(load);
   if (result.status == SettleStatus::BadInput) {
-    reader.fail("K", "a stiffness that leaves a direction free", "a positive definite matrix");
+    reader.fail("K", "a stiffness without a free direction", "a positive definite matrix");
   }
   if (!result.X_ES.p.allFinite() || !std::isfinite(result.residual)) {
     reader.fail("mass", "numbers whose products overflow", "a load within the range of double precision");

@@ -162,7 +162,7 @@ class Command {
     if (!program_.empty()) return;
     throw InputError(
         "command line", "--frames", "'" + printable(settings.from, kLongestMessage) + "'",
-        "a folder that is there, or a command: no program '" + printable(words_.front(), 120) + "' can be run");
+        "a folder that exists, or a command: no program '" + printable(words_.front(), 120) + "' can be run");
   }
 
   Expected<camera::Frame, std::string> look(std::uint64_t look, double time) {
@@ -208,8 +208,8 @@ class Command {
       found = entry.path();
     }
     if (found) return read_frame(*found, settings_.hints);
-    return Unexpected<std::string>("the command ended well and left no frame: {frame}.png, .ply, .pcd or .h5" +
-                                   child.words());
+    return Unexpected<std::string>(
+        "the command ended with exit code 0 but wrote no frame: {frame}.png, .ply, .pcd or .h5" + child.words());
   }
 
   SourceSettings settings_;

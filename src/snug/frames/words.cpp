@@ -82,7 +82,7 @@ std::vector<std::string> split_command(const std::string& text) {
   }
   if (quote != '\0') refuse_command(std::string("an open ") + quote, "its end");
   end_word();
-  if (words.empty()) refuse_command("nothing", "a folder, or a command that leaves a frame");
+  if (words.empty()) refuse_command("nothing", "a folder, or a command that writes a frame");
   return words;
 }
 

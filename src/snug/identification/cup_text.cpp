@@ -37,7 +37,7 @@ std::string errors_as_text(double chi2_per_dof, const HeldBackError& held_back, 
   text += fmt::sprintf("misfit: chi2 per degree of freedom %.3f with the noise %s%s\n", chi2_per_dof,
                        noise_is_given ? "given" : "assumed (the demonstrator's sensors)",
                        chi2_per_dof > 2.0   ? ": more than noise; standard errors are enlarged"
-                       : chi2_per_dof < 0.5 ? ": less than noise; it is smaller than said"
+                       : chi2_per_dof < 0.5 ? ": less than noise; the noise is smaller than declared"
                                             : "");
   text += fmt::sprintf("held back: %.3f mm, %.3f degrees rms, %.3f times the noise\n", 1e3 * held_back.position,
                        kDegrees * held_back.rotation, held_back.relative);
@@ -51,7 +51,7 @@ std::string as_text(const SensorBias& bias) {
       "sensor against %s: %+.2f %+.2f %+.2f N, %+.3f %+.3f %+.3f Nm too much (errors %.2g N, %.2g Nm), %s\n",
       bias.is_against_gravity ? "gravity" : "the law", value[0], value[1], value[2], value[3], value[4], value[5],
       error.head<3>().maxCoeff(), error.tail<3>().maxCoeff(),
-      bias.is_removed ? "taken out: the sensor is not tared" : "left in");
+      bias.is_removed ? "subtracted: the sensor is not tared" : "left in");
   if (bias.is_against_gravity && bias.misfit > kNoConstant)
     text += fmt::sprintf("sensor and gravity differ by more than a constant: chi2 per number %.1f\n", bias.misfit);
   return text;
@@ -110,9 +110,9 @@ std::string format_table(const StiffnessFit& fit, const HeldBackError& held_back
                        kDegrees * fit.rotation);
   if (fit.bias) text += as_text(*fit.bias);
   if (!fit.is_explained)
-    text += "NOT explained: the law of the cup with this noise does not explain these data; no number is to be used\n";
+    text += "NOT explained: the law of the cup with this noise does not explain these data; do not use any number\n";
   if (fit.symmetry)
-    text += fmt::sprintf("symmetry: the same from all sides is %s (p = %.3g; worst: %s)\n",
+    text += fmt::sprintf("symmetry about the axis is %s (p = %.3g; worst: %s)\n",
                          fit.symmetry->is_supported ? "supported" : "NOT supported", fit.symmetry->p_value,
                          fit.symmetry->worst.c_str());
   if (!fit.outliers.empty())

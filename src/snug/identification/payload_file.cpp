@@ -86,9 +86,10 @@ std::vector<Parameter> judge_payload(const PayloadEstimate& estimate) {
   for (Eigen::Index i = 0; i < 3; ++i) {
     const Verdict verdict = judge_centre(error(1 + i));
     list.push_back({kCentres[static_cast<std::size_t>(i)], load.com[i], error(1 + i), "m", verdict,
-                    verdict == Verdict::Identified ? ""
-                                                   : "the gripper tilted by 20 degrees or more, or moved sideways: "
-                                                     "a lift straight up tells nothing along the weight"});
+                    verdict == Verdict::Identified
+                        ? ""
+                        : "the gripper tilted by 20 degrees or more, or moved sideways: a lift straight up does not "
+                          "determine the centre along the weight"});
   }
   constexpr std::array kMoments = {"I_xx", "I_yy", "I_zz", "I_xy", "I_xz", "I_yz"};
   constexpr int kRows[] = {0, 1, 2, 0, 0, 1}, kColumns[] = {0, 1, 2, 1, 2, 2};

@@ -278,9 +278,9 @@ ReleaseErrors evaluate_release(const std::vector<RecordedRelease>& releases, con
 CupReleaseFit identify_release(const std::vector<RecordedRelease>& releases, const CupParams& start) {
   const std::vector<double> masses = release_masses_of(releases);
   if (masses.size() < kFewestReleaseMasses)
-    throw InputError(releases.empty() ? "" : releases.front().where, "mass_kg",
-                     std::to_string(masses.size()) + " different masses",
-                     std::to_string(kFewestReleaseMasses) + " or more: one mass hardly tells springs from flows");
+    throw InputError(
+        releases.empty() ? "" : releases.front().where, "mass_kg", std::to_string(masses.size()) + " different masses",
+        std::to_string(kFewestReleaseMasses) + " or more: one mass hardly distinguishes springs from flows");
   const ReleaseSetup setup = make_release_setup(releases, start);
   const auto size = static_cast<Eigen::Index>(release_numbers().size());
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(size);

@@ -86,13 +86,13 @@ Sensed sense(const SceneSearch& search) {
 std::string advice_of(const model::TaskParameter& parameter, Verdict verdict, bool is_at_bound, bool is_refused,
                       bool is_unexplained) {
   if (is_refused)
-    return "it or a combination with others does not show in these recordings: record motions that it changes, or fix "
+    return "these recordings do not determine it, or a combination with others: record motions that it changes, or fix "
            "it";
-  if (is_at_bound) return "it ended at its bound: widen the bounds, or something else is wrong";
+  if (is_at_bound) return "it ended at its bound: widen the bounds, or look for another error";
   if (verdict == Verdict::Identified) return "";
   if (is_unexplained)
-    return "the simulation misses the recordings by more than the noise declared: more noise, or what the scenario "
-           "leaves out";
+    return "the simulation misses the recordings by more than the declared noise: the noise is larger, or the scenario "
+           "lacks something";
   return "more recordings, or motions that " + parameter.name + " changes more";
 }
 
@@ -126,8 +126,8 @@ void judge_all(const SceneSearch& search, const Sensed& sensed, SceneFit& fit) {
     const bool is_doubtful = is_at_bound || is_unexplained;
     if (is_doubtful && parameter.verdict == Verdict::Identified) parameter.verdict = Verdict::Weak;
     parameter.advice = fit.is_trusted ? advice_of(of, parameter.verdict, is_at_bound, is_refused, is_unexplained)
-                                      : "the simulation misses these recordings by far more than noise: another start, "
-                                        "a wider search, or what the scenario leaves out";
+                                      : "the simulation misses these recordings by far more than noise: try another "
+                                        "start or a wider search, or add what the scenario lacks";
     fit.parameters.push_back(parameter);
   }
 }

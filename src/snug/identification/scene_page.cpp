@@ -50,15 +50,15 @@ Markup numbers(const SceneExperiment& experiment, const SceneFit& fit) {
   const std::string misfit = fmt::format(
       "Misfit: chi2 per degree of freedom {:.3g} with the noise that the task declares. {}", fit.chi2_per_dof,
       !fit.is_trusted     ? "The simulation misses the recordings by far more than noise: do not use these numbers."
-      : fit.is_systematic ? "What is left is not noise: nothing is called identified."
-      : fit.chi2_per_dof > kExplained ? "This is more than noise: nothing is called identified."
+      : fit.is_systematic ? "The remaining error is not noise: no number is called identified."
+      : fit.chi2_per_dof > kExplained ? "This is more than noise: no number is called identified."
                                       : "The simulation explains the recordings.");
   return report::heading(2, "Numbers") + report::paragraph(misfit) + as_markup(table);
 }
 
 Markup what_is_left(const std::vector<UncertaintyChange>& changes) {
   const Markup title = report::heading(2, "What stays uncertain");
-  if (changes.empty()) return title + report::paragraph("The scenario's own uncertainty stays as it is.");
+  if (changes.empty()) return title + report::paragraph("The uncertainty of the scenario does not change.");
   report::Table table{{{"key of uncertainty", true}, {"before"}, {"found"}}, {}, {}};
   for (const UncertaintyChange& change : changes)
     table.rows.push_back({report::code(change.key), four_digits(change.before), four_digits(change.after)});

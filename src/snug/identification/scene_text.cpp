@@ -215,11 +215,11 @@ std::string as_text(const SceneFit& fit) {
   if (std::isfinite(fit.held_back_error)) text += fmt::format("held-back error: {:.4f} mm\n", fit.held_back_error);
   constexpr double kSmall = 0.5;
   text += fmt::format("misfit: chi2 per degree of freedom {:.3g} with the noise of the task{}\n", fit.chi2_per_dof,
-                      fit.chi2_per_dof > kExplained ? ": more than noise, nothing is called identified"
-                      : fit.chi2_per_dof < kSmall   ? ": the noise is less than the task says, and so are the errors"
+                      fit.chi2_per_dof > kExplained ? ": more than noise, no number is called identified"
+                      : fit.chi2_per_dof < kSmall   ? ": the noise is smaller than the task says, and so are the errors"
                                                     : "");
   if (fit.is_systematic)
-    text += "residuals hang together: what is left is no noise, and nothing is called identified\n";
+    text += "residuals are correlated: the remaining error is not noise, and no number is called identified\n";
   text += recordings_as_text(fit);
   if (!fit.is_trusted) text += "NOT to be trusted: the simulation misses the recordings by far more than noise\n";
   text += parameters_as_text(fit);

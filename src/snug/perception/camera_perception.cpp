@@ -217,7 +217,7 @@ std::unique_ptr<Perception> make_perception(Kind kind, std::uint64_t seed, const
   if (kind != Kind::Frames) return make_perception(kind, seed, scenario);
   if (!frames) {
     throw InputError("command line", "--perception", "frames, without --frames",
-                     "--frames of `snug pack`, with a folder or with a command that leaves a frame");
+                     "--frames of `snug pack`, with a folder or with a command that writes a frame");
   }
   return std::make_unique<Frames>(seed, scenario, std::move(frames));
 }

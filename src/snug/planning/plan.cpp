@@ -88,8 +88,8 @@ class Planner {
     }
     plan_.outcome = PlanOutcome::Infeasible;
     plan_.reason = fmt::format(
-        "too heavy for the cup, which could carry {:.2f} times its weight and is to carry {:.2f} times "
-        "(place_limits.hold_factor); {} would",
+        "too heavy for the cup: it could hold {:.2f} times the weight, {:.2f} times are required "
+        "(place_limits.hold_factor); {} would hold it",
         factor, asked, would);
     return true;
   }

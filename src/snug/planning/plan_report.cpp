@@ -22,7 +22,7 @@ std::string why(const Tried& one) {
     case Verdict::CannotWin:
       return "even if it were certain";
     case Verdict::SearchEnded:
-      return "the best is good enough, or enough were tried";
+      return "the best is good enough, or the limit of attempts is reached";
     case Verdict::LessUtility:
       return "another one is worth more";
     default:

@@ -268,7 +268,7 @@ Attempt Rehearsal::attempt(const packing::Candidate& candidate, const skills::In
   if (was_sent_in_vain(attempt)) {
     attempt.was_rehearsed = false;
     attempt.failure = AttemptFailure::SentBefore;
-    attempt.text = "sent before, and ended by what it met";
+    attempt.text = "sent before, and ended by contact or load";
     return attempt;
   }
   const std::size_t known = grasps_.size();
@@ -297,7 +297,7 @@ Attempt Rehearsal::attempt(const packing::Candidate& candidate, const skills::In
   auto waypoints = drivable(cell_.layout, last, rows, grasp.swing);
   if (!can_follow(cell_.reaches, cell_.layout, last, waypoints)) {
     attempt.failure = AttemptFailure::OutOfReach;
-    attempt.text = "the robot cannot follow the way to its place";
+    attempt.text = "the robot cannot follow the path to its place";
     return attempt;
   }
   if (const auto away = waypoints_to_next(waypoints.back()); !away.empty()) {

@@ -57,7 +57,7 @@ void require_format(hid_t file, const std::filesystem::path& path) {
   read_attribute(file, "format_version", H5T_NATIVE_INT32, &version);
   if (version < 1 || version > kFormatVersion)
     throw InputError(path.string(), "format_version", std::to_string(version),
-                     "1 to " + std::to_string(kFormatVersion) + ": a newer snug is needed to read this file");
+                     "1 to " + std::to_string(kFormatVersion) + ": this file needs a newer snug");
 }
 
 /// The events that all columns hold: a killed run may have left some columns longer than others.

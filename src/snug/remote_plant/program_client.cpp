@@ -84,8 +84,8 @@ class ProgramClient {
       if (!trouble.empty()) return trouble;
       if (stands_still()) {
         const std::string text =
-            fmt::format("the simulator's time stands still at {} s: its answers to Controls show no step for {} s",
-                        latest_, settings_.patience);
+            fmt::format("the simulator's time stays at {} s: its answers to Controls showed no step for {} s", latest_,
+                        settings_.patience);
         client_.report_error(text);
         return text;
       }

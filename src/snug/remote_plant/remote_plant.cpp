@@ -113,7 +113,7 @@ void RemotePlant::take_over_tracking() {
   const double stiffness = tracking->vector.x();
   if (!(stiffness > 0.0) || !std::isfinite(stiffness)) {
     refuse(options_.address,
-           fmt::format("a robot that tracks: its sensor '{}' says {}", click::kTrackingSensor, stiffness));
+           fmt::format("a robot that follows its targets: its sensor '{}' says {}", click::kTrackingSensor, stiffness));
   }
   sequence_.task_stiffness = stiffness;
 }

@@ -27,7 +27,7 @@ remote_ur::Endpoint ur_endpoint_of(const PlantChoice& plant) {
   endpoint.patience = plant.patience;
   if (!remote_ur::is_loopback_host(endpoint.host) && !plant.may_move) {
     throw InputError("command line", "--plant", "'" + plant.address + "', which is not on this machine",
-                     "--yes-this-moves-a-robot, when its cell is free of people and its emergency stop is at hand");
+                     "--yes-this-moves-a-robot, if nobody is in its cell and its emergency stop is within reach");
   }
   return endpoint;
 }
@@ -61,8 +61,9 @@ void refuse_held_box(const PlantChoice& plant, const RemoteRun& run, const plant
   const bool is_resumed = run.session.resume.has_value();
   if (!robot.io.vacuum || robot.pressure_gauge >= held || (is_resumed && plant.observe)) return;
   throw InputError("command line", "--plant", "'" + plant.address + "', whose cup holds a box",
-                   is_resumed ? "--observe ADDRESS, or the box at the aligner: take it out of the cup by hand"
-                              : "an empty cup: take the box out of it, or go on by --resume LOG --observe ADDRESS");
+                   is_resumed
+                       ? "--observe ADDRESS, or the box at the aligner: take it out of the cup by hand"
+                       : "an empty cup: take the box out of it, or continue with --resume LOG --observe ADDRESS");
 }
 
 /// What is known of a trial with a plant elsewhere when it has ended.
@@ -147,11 +148,11 @@ camera::FrameSource make_frames(const PlantChoice& plant, const model::Scenario&
   }
   if (!plant.frames) {
     throw InputError("command line", "--perception", "frames, without --frames",
-                     "--frames with a folder, or with a command that leaves a frame");
+                     "--frames with a folder, or with a command that writes a frame");
   }
   if (!plant.is_served()) {
     throw InputError("command line", "--perception", "frames, of a plant in this program",
-                     "--plant with a cell of its own, which a camera can see; or --perception camera");
+                     "--plant with a cell that a camera can see; or --perception camera");
   }
   if (scenario.cameras.empty()) {
     throw InputError(scenario.source_name, "cameras", "none", "a camera, for --perception frames");
@@ -192,7 +193,7 @@ study::Trial run_ur_trial(const PlantChoice& plant, const RemoteRun& run,
   const bool needs_truth = kind != perception::Kind::DeadReckoning && kind != perception::Kind::Frames;
   if (needs_truth && !plant.observe) {
     throw InputError("command line", "--perception", "'" + plant.perception + "' without --observe",
-                     "--observe ADDRESS, where boxes are told, or --perception frames or dead-reckoning");
+                     "--observe ADDRESS, which reports the boxes, or --perception frames or dead-reckoning");
   }
   std::optional<remote_plant::BoxObserver> observer;
   if (plant.observe) observer.emplace(run.scenario, run.sequence, *plant.observe, plant.patience);

@@ -73,7 +73,7 @@ class Comparison {
   void compare_modes() {
     const ur::PrimaryState& state = robot_.state;
     add("safety mode", state.safety_mode == 1, ur::safety_mode_name(state.safety_mode), "NORMAL",
-        state.safety_mode == 3 ? "look why the robot stopped, then `unlock protective stop`"
+        state.safety_mode == 3 ? "find out why the robot stopped, then `unlock protective stop`"
                                : "release the stop at the teach pendant");
     add("robot mode", state.robot_mode == 7, ur::robot_mode_name(state.robot_mode), "RUNNING",
         "switch the power on and release the brakes");
@@ -90,7 +90,7 @@ class Comparison {
                                 : "none",
         "none", "stop the program");
     add("speed slider", state.speed_slider > 0.999, fmt::format("{:.0f} %", 100.0 * state.speed_slider), "100 %",
-        "set the slider, unless it is meant to be slower than planned");
+        "set the slider, unless the robot should be slower than planned");
   }
 
   void compare_kinematics() {

@@ -42,7 +42,7 @@ RemoteUr::RemoteUr(const model::Scenario& scenario, const std::string& sequence,
       runner_(plant::runner_settings(scenario_, !motion::is_fast(options_.motions.tracking))) {
   if (!options_.is_dry && !io_.vacuum_gauge && !io_.vacuum_reached) {
     throw InputError(scenario_.source_name, "robot.io", "no vacuum_gauge and no vacuum_reached",
-                     "one of them: a motion has to know whether the cup holds a box");
+                     "one of them: a motion needs to know whether the cup holds a box");
   }
   arm_ = std::make_unique<cell::CellArm>(scenario_,
                                          sequence_.task_stiffness.value_or(scenario_.controller.task_stiffness));
@@ -195,7 +195,7 @@ std::vector<plant::Event> RemoteUr::advance() {
       cancel_motion();
       if (!awaited_.empty()) {
         awaited_.clear();
-        runner_.add({time(), plant::FaultRaised{plant::EndReason::Cancelled, "interrupted while it waited for a box"}});
+        runner_.add({time(), plant::FaultRaised{plant::EndReason::Cancelled, "interrupted while waiting for a box"}});
         push_result();
       }
     }
@@ -294,7 +294,7 @@ void RemoteUr::acknowledge() {
   }
   (void)wait_until(kStartPatience, [this] { return is_ready() || !failure_.empty(); });
   const std::lock_guard lock(mutex_);
-  if (!is_ready()) return fail("the robot cannot go on after its stop: " + why_stopped());
+  if (!is_ready()) return fail("the robot cannot continue after its stop: " + why_stopped());
   is_stopped_ = false;
   stand();
 }

@@ -81,7 +81,7 @@ RtdeClient::RtdeClient(std::function<Connection()> connect_to, const std::vector
   std::vector<std::string> types = set_up(outputs, frequency);
   std::vector<std::string> known;
   for (std::size_t i = 0; i < outputs.size(); ++i) (types[i] == "NOT_FOUND" ? unknown_ : known).push_back(outputs[i]);
-  if (known.empty()) connection_->fail("none of the outputs is known there");
+  if (known.empty()) connection_->fail("the controller knows none of the outputs");
   if (!unknown_.empty()) {  // a recipe that was refused is not mended: clients begin anew
     connect();
     types = set_up(known, frequency);

@@ -92,7 +92,7 @@ Browser::Browser(const std::string& program, const std::filesystem::path& profil
     call("Emulation.setDeviceMetricsOverride", screen.dump());
   } catch (const Json::exception& error) {
     end();
-    throw BrowserError(fmt::format("{} answers in a way that is not known: {}", program, error.what()));
+    throw BrowserError(fmt::format("{} gave an unexpected answer: {}", program, error.what()));
   } catch (...) {
     end();
     throw;
@@ -193,7 +193,7 @@ std::string Browser::receive(Clock::time_point deadline) {
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) throw BrowserError("the browser has ended");
     buffer_.append(part.data(), static_cast<std::size_t>(count));
-    if (buffer_.size() > kLargestMessage) throw BrowserError("the browser says more than can be");
+    if (buffer_.size() > kLargestMessage) throw BrowserError("the browser sent too much data");
   }
 }
 

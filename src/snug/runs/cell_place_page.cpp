@@ -130,8 +130,8 @@ std::string make_place_page(const model::Scenario& scenario, const PlaceSearch& 
       model::parse_scenario(write_place(scenario, search.places.front(), options), scenario.source_name);
   const ReachMap map = make_reach_map(placed, options.threads, options.check);
   content += report::figure(
-      "Place 1 from above: points of the container and of the picks that the tool reaches at all heights "
-      "(of the others, what keeps it away is shown under the mouse), and how far it reaches.",
+      "Place 1 from above: points of the container and of the picks that the tool reaches at all heights, and how far "
+      "it reaches. Point at another to see what prevents it.",
       report::floor_plan(plan_of(placed, map, search.reach)));
   return report::make_page("Places of " + search.robot, content);
 }

@@ -39,7 +39,7 @@ struct OutsideRun::Impl {
         state(cell.make_state()),
         work(cell.make_workspace()),
         recorder(cell, recording_of(cell, run_options)) {
-    SNUG_CHECK(cell.arm() != nullptr, "only a cell with a robot is driven from outside");
+    SNUG_CHECK(cell.arm() != nullptr, "a cell with a robot, to be driven from outside");
   }
 
   const Simulation& simulation;
@@ -58,7 +58,7 @@ OutsideRun::~OutsideRun() = default;
 
 const CellTick& OutsideRun::advance(const OutsideCommand& command) {
   Impl& run = *impl_;
-  SNUG_CHECK(!run.last.failure, "a run that failed does not go on");
+  SNUG_CHECK(!run.last.failure, "a run that failed cannot continue");
   run.last = run.simulation.advance(command, run.state, run.work);
   for (record::Event& event : run.work.solver.take_events(run.simulation.world())) {
     run.state.event_log.note(std::move(event));

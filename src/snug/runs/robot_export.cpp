@@ -21,7 +21,7 @@ namespace {
 /// Why nothing is exported, unless nothing is wrong.
 std::string refuse(const char* what, const std::string& wrong) {
   if (wrong.empty()) return {};
-  return fmt::format("not exported: {}: {} (--unchecked exports it all the same)", what, wrong);
+  return fmt::format("not exported: {}: {} (--unchecked exports it anyway)", what, wrong);
 }
 
 RobotText refused(std::string refusal) { return {{}, {}, std::move(refusal)}; }
@@ -124,9 +124,8 @@ std::vector<std::optional<control::CarriedLoad>> RobotExport::find_loads() const
       loads.back() = {inertia.mass, held->X_EP * inertia.com, R_EP * inertia.inertia * R_EP.transpose()};
     }
     if (boxes.is_unknown() && !was_unknown && settings_.warn) {
-      settings_.warn(
-          fmt::format("waypoint {} ({}): no box of sequence {} is known to be held: payload of the gripper alone",
-                      i + 1, motion::name_of(waypoints[i]), simulation_.sequence().name));
+      settings_.warn(fmt::format("waypoint {} ({}): no known box of sequence {} is held: payload of the gripper alone",
+                                 i + 1, motion::name_of(waypoints[i]), simulation_.sequence().name));
     }
     was_unknown = boxes.is_unknown();
   }
@@ -146,7 +145,7 @@ std::string RobotExport::find_refusal_of(const motion::PreparedProgram& fitted) 
   cell::SimulationOptions exact = simulation_.options();
   exact.tracking = motion::ExactTracking{};
   const cell::Simulation follower(simulation_.scenario(), simulation_.sequence().name, exact);
-  return refuse("the robot that follows exactly does not do what was simulated",
+  return refuse("a robot that follows exactly does not repeat the simulation",
                 compare_trials(*trial_, try_motion(follower, fitted)));
 }
 

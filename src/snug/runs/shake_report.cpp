@@ -154,7 +154,7 @@ std::string format_shake_page(const ShakeResult& result, const ShakeWords& words
                           report::number(1e3 * box.remaining, 1), report::number(kDegrees * box.tilt, 1),
                           box.id + (box.fell ? " falls" : "")});
   }
-  content += report::heading(2, "Every motion, with the friction with which it went worst") + report::as_markup(table);
+  content += report::heading(2, "Every motion, with its worst friction") + report::as_markup(table);
   return report::make_page("Transport: " + words.load, content);
 }
 

@@ -260,7 +260,7 @@ bool Server::Impl::must_wait(const Request& request, Clock::time_point& until) {
   const bool is_control = would_control && Simulator::is_control(request.frame);
   if ((is_control || (would_control && Simulator::is_handshake(request.frame))) && is_driven()) {
     if (is_control && is_silent()) {
-      lose(controller, "the controller was silent and another took its place");
+      lose(controller, "the controller was silent, and another one took its place");
     } else if (now < request.received + kTakeOver && (!is_control || simulator.has_commanded())) {
       until = request.received + kTakeOver;
       return true;

@@ -21,7 +21,7 @@ using click::Message;
 using click::Reset;
 using click::SensorRequest;
 
-constexpr const char* kBusy = "another controller drives this cell; it has room for one at a time";
+constexpr const char* kBusy = "another controller drives this cell; only one can at a time";
 
 template <class T>
 bool holds(const Message& message) {

@@ -146,8 +146,8 @@ OperatorFile::OperatorFile(const std::filesystem::path& path, std::vector<std::s
       file_(path == "-" ? ::dup(STDIN_FILENO) : ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
   struct stat status {};
   if (!file_.is_open() || ::fstat(file_.get(), &status) != 0)
-    throw InputError(name_, "", std::strerror(errno), "a file with what the operator says");
-  if (S_ISDIR(status.st_mode)) throw InputError(name_, "", "a folder", "a file with what the operator says");
+    throw InputError(name_, "", std::strerror(errno), "a file with the operator's orders");
+  if (S_ISDIR(status.st_mode)) throw InputError(name_, "", "a folder", "a file with the operator's orders");
   is_stream_ = !S_ISREG(status.st_mode);
   take(!is_stream_);
 }

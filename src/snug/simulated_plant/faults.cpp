@@ -24,7 +24,7 @@ Fault parse_fault(std::string_view word) {
     const bool is_whole = error == std::errc() && end == number.data() + number.size();
     if (!is_whole || fault.item < 1 || fault.item > kMostItems) {
       throw InputError("command line", "--fault", "'" + std::string(word) + "'",
-                       "KIND@N with N the how-manieth item, from 1, such as drop@3");
+                       "KIND@N with N the number of the item, from 1, such as drop@3");
     }
     return fault;
   }

@@ -30,7 +30,7 @@ constexpr Measure kMeasures[] = {
     {"items that end as planned, %",
      [](const SessionRow& row) { return row.items_sent > 0 ? 100.0 * row.items_as_planned / row.items_sent : kNone; }},
     {"boxes an hour of the plant's time", [](const SessionRow& row) { return row.boxes_per_hour; }},
-    {"boxes an hour, the robot's waits for a plan included",
+    {"boxes an hour, including the robot's waits for a plan",
      [](const SessionRow& row) { return row.boxes_per_hour_with_planning; }},
     {"time to decide and rehearse an item, median, s",
      [](const SessionRow& row) { return row.decision_seconds_median; }},
@@ -152,10 +152,10 @@ std::string format_compare_page(const model::Scenario& scenario, const std::vect
                                 const std::filesystem::path& page) {
   const std::vector<ComparedSession> whole = whole_sessions(sessions);
   const std::vector<Group> agents = group_by(whole, [](const SessionRow& row) { return row.point.agent; });
-  Markup content = report::paragraph(
-      fmt::format("{} sessions compared. Each dot is a session: an agent packs a sequence in a plant of its own, and "
-                  "what is true of the plant counts. Bars are means.",
-                  whole.size()));
+  Markup content =
+      report::paragraph(fmt::format("{} sessions compared. Each dot is a session: an agent packs a sequence in a plant "
+                                    "of its own, and the true state of the plant counts. Bars are means.",
+                                    whole.size()));
   if (whole.size() < sessions.size()) {
     content += report::paragraph(fmt::format("{} more were interrupted: they are shown below and not in the charts.",
                                              sessions.size() - whole.size()));

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 constexpr const char* kExpected =
-    "the files as they were, or a folder of its own (--dir) for the changed study: rows of two worlds do not mix";
+    "the files as they were, or another folder (--dir) for the changed study: rows of two versions do not mix";
 
 std::string digits(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
@@ -95,7 +95,7 @@ void OneWorld::add_unknown(std::uint64_t row) {
 
 void OneWorld::expect_now(const std::string& version) const {
   if (unknown_) {
-    throw InputError(folder_, fmt::format("row {}", *unknown_), "by an older snug, which did not say what it read",
+    throw InputError(folder_, fmt::format("row {}", *unknown_), "by an older snug, which did not record what it read",
                      "another folder (--dir): rows of two programs do not mix");
   }
   if (version_ && version_->first != version) {

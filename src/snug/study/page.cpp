@@ -45,9 +45,10 @@ Markup main_effects(const OutputEffects& effects) {
   for (const MainEffect& effect : effects.main) charts.push_back(as_markup(chart_of(effect, {low, high})));
   return report::heading(3, "Main effects") +
          report::paragraph(
-             "Mean of each level with two standard errors; the part of the variance that the factor explains by "
-             "itself; none: not more than chance, or than the computation errs.") +
-         (effects.is_noise ? report::paragraph("Rows differ by no more than the computation itself errs.") : Markup{}) +
+             "Mean of each level with two standard errors, and the part of the variance that the factor alone "
+             "explains; none: no more than chance or the error of the computation.") +
+         (effects.is_noise ? report::paragraph("Rows differ by no more than the error of the computation.")
+                           : Markup{}) +
          report::side_by_side(charts);
 }
 
@@ -58,7 +59,8 @@ Markup interactions(const OutputEffects& effects) {
     table.rows.push_back({pair.first, pair.second, pair.is_seen ? percent(pair.share) : "none"});
   }
   return report::heading(3, "Interactions") +
-         report::paragraph("What a pair explains beyond both by themselves; few rows in a cell make it uncertain.") +
+         report::paragraph(
+             "The part that a pair of factors explains beyond both alone; few rows in a cell make it uncertain.") +
          as_markup(table);
 }
 
@@ -102,7 +104,7 @@ std::string make_page(const Study& study, const Status& status, const std::vecto
        {"design", name_of(study.design),
         fmt::format("{} points with {} repetitions, seed {}", study.point_count, study.repeat, study.seed)}});
   content += report::paragraph(Markup("Each row is a run of ") + report::code("snug " + study.verb) + ".");
-  if (effects.empty()) content += report::paragraph("No number varies from row to row.");
+  if (effects.empty()) content += report::paragraph("No output varies from row to row.");
   for (const OutputEffects& output : effects) {
     content += report::section(report::heading(2, output.output) + quantiles(output) + main_effects(output) +
                                interactions(output) + worst(study, output));

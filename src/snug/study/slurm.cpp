@@ -55,7 +55,7 @@ std::string submit(const std::filesystem::path& script) {
   const int status = ::pclose(pipe);
   while (!said.empty() && said.back() == '\n') said.pop_back();
   if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
-    throw std::runtime_error("there is no sbatch here; the script is " + script.string());
+    throw std::runtime_error("sbatch is not installed; the script is " + script.string());
   if (status != 0) throw std::runtime_error("sbatch: " + said);
   return printable(said, kLongestMessage);
 }

@@ -276,8 +276,8 @@ std::map<std::uint64_t, RowResult> Folder::read(std::uint64_t chunk, OneWorld* w
       return true;
     }
     throw InputError(table(chunk).string(), "row " + std::to_string(result->row), "two different results",
-                     "a run that is a function of its words alone (exit codes " + std::to_string(at->second.exit_code) +
-                         " and " + std::to_string(result->exit_code) + ")");
+                     "a run that depends on its command line alone (exit codes " +
+                         std::to_string(at->second.exit_code) + " and " + std::to_string(result->exit_code) + ")");
   });
   return rows;
 }

@@ -205,8 +205,8 @@ std::string describe_hold(const study::Trial& trial) {
   const auto worst =
       std::ranges::min_element(trial.items, {}, [](const study::TrueItem& one) { return one.motion.hold_factor; });
   if (worst == trial.items.end() || !std::isfinite(worst->motion.hold_factor)) return {};
-  return fmt::format("hold of the cup    {:.1f} times what it had to carry, at the worst instant ({})\n",
-                     worst->motion.hold_factor, worst->id);
+  return fmt::format("hold of the cup    {:.1f} times its load, at the worst instant ({})\n", worst->motion.hold_factor,
+                     worst->id);
 }
 
 /// "         tried  100.6, 238.7, 116.1 mm, +Y up, tilted: it would stick out", a line for each
@@ -379,10 +379,9 @@ std::string format_plan(const session::SessionResult& result, bool is_complete) 
 std::string find_failure(const session::SessionResult& result, const MonteCarloResult& repeated, bool wants_program) {
   if (!result.failure.text.empty()) return result.failure.text;
   const std::vector<std::string> rejected = session::rejected_items(result);
-  if (!rejected.empty()) return fmt::format("the load is not as it has to be: {}", fmt::join(rejected, "; "));
+  if (!rejected.empty()) return fmt::format("the load is not accepted: {}", fmt::join(rejected, "; "));
   if (result.stop_reason == session::StopReason::NoFrame && !result.stopped.empty()) return result.stopped;
-  if (repeated.failed > 0)
-    return fmt::format("{} of {} repeated runs did not reach their end", repeated.failed, repeated.count);
+  if (repeated.failed > 0) return fmt::format("{} of {} repeated runs did not finish", repeated.failed, repeated.count);
   if (wants_program && result.program.waypoints.empty()) return "nothing was packed: no program, no recording";
   return {};
 }

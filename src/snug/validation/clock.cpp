@@ -524,7 +524,7 @@ bool moves(const Signals& signals) {
 const char* describe(NoClock reason) {
   switch (reason) {
     case NoClock::NothingInCommon:
-      return "the two have too little in common";
+      return "the signals have too little in common";
     case NoClock::NothingMoves:
       return "nothing moves";
     case NoClock::TooUnlike:

@@ -48,7 +48,7 @@ Markup clocks_section(const Validation& validation) {
   }
   return report::heading(2, "Clocks") +
          report::paragraph(
-             "Shift: what a source's clock shows less the simulation's, in the middle of the run; found by "
+             "Shift: clock of a source minus that of the simulation, in the middle of the run; found by "
              "cross-correlation over all bodies, with its standard error.") +
          as_markup(table);
 }
@@ -115,7 +115,7 @@ Markup error_section(const Validation& validation, const TablePlan& plan) {
                   plan.scale_second * (reported_means().*plan.mean_second), plan.unit_second);
   const std::string floor =
       plan.shows_tracking
-          ? " With equal physics on both sides the report form leaves 2.3 mm and 3.4 degrees: its floor."
+          ? " With identical physics on both sides the report form gives 2.3 mm and 3.4 degrees: its floor."
           : "";
   return report::heading(2, plan.title) + report::paragraph(plan.text) + as_markup(error_table(validation, plan)) +
          report::paragraph(report::small(reported + floor));

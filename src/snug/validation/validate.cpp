@@ -297,7 +297,7 @@ std::vector<Measurement> load_repetitions(const std::filesystem::path& path, con
       failures += (failures.empty() ? "" : "; ") + measurement.name + ", " + clock.source + ": " + clock.failure;
     }
   }
-  throw InputError(path.string(), "", "measurements on no clock of the simulation (" + failures + ")",
+  throw InputError(path.string(), "", "measurements whose clock cannot be found (" + failures + ")",
                    "measurements of this run's motion, or shifts by hand (--shift)");
 }
 

@@ -232,7 +232,7 @@ void Folder::append(const std::string& name, const std::string& line) const {
   const Descriptor file(::openat(folder_.get(), name.c_str(), kFlags));
   struct stat status {};
   if (!file.is_open() || ::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode))
-    throw InputError(name, "", "no file that can be written", "a run that who operates can step into");
+    throw InputError(name, "", "no file that can be written", "a run that an operator can step into");
   std::string_view rest = line;
   while (!rest.empty()) {
     const ssize_t count = ::write(file.get(), rest.data(), rest.size());

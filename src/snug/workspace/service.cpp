@@ -227,7 +227,7 @@ ApiAnswer Service::answer(const ApiRequest& request) {
 }
 
 ApiAnswer Service::route(const ApiRequest& request) {
-  if (!request.path.starts_with(kRoot)) return refusal(404, "there is version 1 of this interface only: /api/1/");
+  if (!request.path.starts_with(kRoot)) return refusal(404, "this interface has only version 1: /api/1/");
   const std::vector<std::string> parts = split(std::string_view(request.path).substr(kRoot.size()));
   const std::string& what = parts[0];
   const std::string name = parts.size() > 1 ? parts[1] : std::string();
@@ -256,7 +256,7 @@ ApiAnswer Service::route(const ApiRequest& request) {
       if (one.name == name) return as_answer(template_of(one));
     }
   }
-  return refusal(404, "there is no such address: docs/ui.md lists them");
+  return refusal(404, "no such address: docs/ui.md lists them");
 }
 
 ApiAnswer Service::answer_folder() {
@@ -462,12 +462,12 @@ ApiAnswer Service::answer_run(const ApiRequest& request, const std::string& name
   if (part == "live" && is_get) return watch_frames(name);
   if (part == "stop" && request.method == "POST") {
     if (!runs_.stop(name))
-      return refusal(409, "this run is none of this program: it is over, or another program started it");
+      return refusal(409, "this program does not own this run: it is over, or another program started it");
     return as_answer({{"stopping", name}});
   }
   if (part == "stop-now" && request.method == "POST") {
     if (!runs_.stop_now(name))
-      return refusal(409, "this run is none of this program: it is over, or another program started it");
+      return refusal(409, "this program does not own this run: it is over, or another program started it");
     return as_answer({{"stopped", name}});
   }
   if (part == "operator" && request.method == "POST") {
@@ -494,7 +494,7 @@ ApiAnswer Service::answer_run(const ApiRequest& request, const std::string& name
     answer.policy = kReportPolicy;
     return answer;
   }
-  return refusal(404, "there is no such address: docs/ui.md lists them");
+  return refusal(404, "no such address: docs/ui.md lists them");
 }
 
 ApiAnswer Service::start_runs(const std::string& body, bool starts) {

@@ -56,7 +56,7 @@ export interface Written {
   facts: Facts;
 }
 
-/** What a sheet does not say: mm, cm, m or in; kg, g or lb; point or comma. */
+/** Answers to what a sheet leaves open: mm, cm, m or in; kg, g or lb; point or comma. */
 export interface SheetAnswers {
   length?: string;
   mass?: string;
@@ -107,7 +107,7 @@ export interface TemplateText {
   arm: TemplateArm | null;
 }
 
-/** Something that stands in a cell and can be moved. */
+/** A part of a cell that can be moved. */
 export interface CellPart {
   key: string;
   name: string;
@@ -199,7 +199,7 @@ export interface RunStatus {
   stopped: string;
   files: string[];
   now: string; // item under way
-  held: string; // item at which who operates is waited for
+  held: string; // item at which the run waits for the operator
   boxes?: BoxEnd[]; // not in the list of the folder
 }
 
@@ -216,7 +216,7 @@ export interface TemplateName {
 export interface FolderList {
   folder: string;
   version: string;
-  can_be_written: boolean; // else nothing can be saved or run there
+  can_be_written: boolean; // if false, nothing can be saved or run
   scenarios: FolderFile[];
   items: FolderFile[];
   arms: FolderFile[];
@@ -237,7 +237,7 @@ export interface RunRequest {
   observe?: string;
   perception?: string;
   moves_a_robot?: boolean;
-  holds?: boolean; // the operator is waited for at the first box
+  holds?: boolean; // the run waits for the operator at the first box
 }
 
 export interface RunCommand {

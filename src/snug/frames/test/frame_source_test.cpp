@@ -94,7 +94,7 @@ TEST_F(FrameSource, SaysHowACommandFailedWithoutItsEscapes) {
   expect_trouble(shell("printf 'warming up\\n\\033[31mno light\\033[0m\\n' >&2; exit 3\n"),
                  "exit code 3: warming up\\n\\x1b[31mno light\\x1b[0m");
   expect_trouble(shell("kill -9 $$\n"), "by signal 9");
-  expect_trouble("true", "left no frame");
+  expect_trouble("true", "wrote no frame");
   expect_trouble(shell("cp " + taken() + " $SNUG_FRAME.png; cp " + taken() + " $SNUG_FRAME.ply\n"), "two frames");
   expect_trouble(shell("echo hello > $SNUG_FRAME.png\n"), "begins like none");
   expect_trouble(shell("mkfifo $SNUG_FRAME.png\n"), "frame.png");

@@ -100,7 +100,7 @@ TEST(CupText, WarnsPeople) {
   fit.chi2_per_dof = 0.2;
   EXPECT_TRUE(has_text(format_table(fit, {}, true), "less than noise"));
   fit.is_explained = false;
-  EXPECT_TRUE(has_text(format_table(fit, {}, true), "no number is to be used"));
+  EXPECT_TRUE(has_text(format_table(fit, {}, true), "do not use any number"));
 }
 
 DampingFit some_damping() {
@@ -205,10 +205,10 @@ TEST(SceneText, SaysWhenNumbersAreNotToBeTrusted) {
   fit.chi2_per_dof = 9.0;
   const std::string text = format_table(fit);
   EXPECT_TRUE(has_text(text, "NOT to be trusted"));
-  EXPECT_TRUE(has_text(text, "residuals hang together"));
-  EXPECT_TRUE(has_text(text, "more than noise, nothing is called identified"));
+  EXPECT_TRUE(has_text(text, "residuals are correlated"));
+  EXPECT_TRUE(has_text(text, "more than noise, no number is called identified"));
   fit.chi2_per_dof = 0.3;
-  EXPECT_TRUE(has_text(format_table(fit), "the noise is less than the task says"));
+  EXPECT_TRUE(has_text(format_table(fit), "the noise is smaller than the task says"));
 }
 
 TEST(SceneText, OfAnErrorCountsWhatCouldNotBeSimulated) {

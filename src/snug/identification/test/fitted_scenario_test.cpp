@@ -147,7 +147,7 @@ TEST_F(FittedScenarioTest, HasAPageThatNamesWhatIsNotToBeUsedAndEscapesNames) {
   const std::string sound = make_page(both, fit, {});
   EXPECT_NE(sound.find("The simulation explains the recordings."), std::string::npos);
   EXPECT_NE(sound.find("not told"), std::string::npos);
-  EXPECT_NE(sound.find("own uncertainty stays as it is"), std::string::npos);
+  EXPECT_NE(sound.find("uncertainty of the scenario does not change"), std::string::npos);
   EXPECT_NE(sound.find("&lt;script&gt;"), std::string::npos);
   EXPECT_NE(sound.find("a &amp; b"), std::string::npos);
   EXPECT_EQ(sound.find("error on recordings held back"), std::string::npos);

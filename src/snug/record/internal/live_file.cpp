@@ -50,7 +50,7 @@ std::vector<unsigned char> copy_between_commits(int descriptor) {
     unlock(descriptor, LockByte::Commit);
     if (Clock::now() - start < kLongestCopy) return bytes;
   } while (Clock::now() < deadline);
-  throw H5Error("it is being written, and too big to be copied between two writes: wait for its end");
+  throw H5Error("it is being written, and too large to copy between two writes: wait until it is finished");
 }
 
 /// A file in memory. HDF5 tells files in memory apart by their names alone.

@@ -39,8 +39,9 @@ class ProgramRun {
         state_(simulation_.make_state()),
         work_(simulation_.make_workspace(options.threads)) {
     if (scenario.initial_state) {
-      throw InputError(scenario.source_name, "initial_state", "with a program",
-                       "none: recordings do not hold where controller and gripper are; only scenes go on from one");
+      throw InputError(
+          scenario.source_name, "initial_state", "with a program",
+          "none: recordings do not contain the state of controller and gripper; only scenes can be resumed");
     }
     recorder_.emplace(simulation_, recording_of(options));
   }

@@ -14,10 +14,10 @@ ReachTarget find_target(const model::Scenario& scenario) {
   const auto require = [&](bool is_there, const char* key, const char* expected) {
     if (!is_there) throw InputError(scenario.source_name, key, "", expected);
   };
-  require(scenario.robot.has_value(), "robot", "a robot, to tell what it reaches");
-  require(scenario.tool.has_value(), "tool", "a tool, to tell what it reaches");
+  require(scenario.robot.has_value(), "robot", "a robot, to map what it reaches");
+  require(scenario.tool.has_value(), "tool", "a tool, to map what it reaches");
   const model::Container* container = model::find_container(scenario, scenario.target);
-  require(container != nullptr, "containers", "a container, to tell what is reached in it");
+  require(container != nullptr, "containers", "a container, to map what the tool reaches in it");
   const std::optional<double> yaw = motion::yaw_of(scenario.controller.X_WE_start.R);
   require(yaw.has_value(), "controller.start_pose", "a tool that points down");
   return {container, *yaw};

@@ -152,15 +152,14 @@ int Visitors::refuse(const httplib::Request& request, httplib::Response& respons
     return 403;
   };
   if (!is_right_name(request)) {
-    return forbid(is_local_ ? "This server answers to the names of this machine only.\n"
-                            : "This server answers to the names of its machine only, and to those of --name.\n");
+    return forbid(is_local_ ? "This server answers only to names of this machine.\n"
+                            : "This server answers only to names of its machine and to those of --name.\n");
   }
   if (is_from_another_page(request)) {
     response.status = 403;
     return 403;
   }
-  if (!knows_token(request, response))
-    return forbid("The address that the program prints has a token: open that one.\n");
+  if (!knows_token(request, response)) return forbid("Open the address that the program prints: it has a token.\n");
   return 0;
 }
 

@@ -308,7 +308,7 @@ TEST(Server, GivesTheCellOfASilentControllerToTheNext) {
   EXPECT_FALSE(silent.control(control_of(kStill)).has_value());
   served.stop();
   ASSERT_EQ(served.runs.size(), 1u);
-  EXPECT_EQ(served.runs[0].ended_by, "the controller was silent and another took its place");
+  EXPECT_EQ(served.runs[0].ended_by, "the controller was silent, and another one took its place");
 }
 
 TEST(Server, RefusesAddressesThatAreNoneOrNotForEverybody) {

@@ -79,7 +79,7 @@ TEST(JointLink, RefusesTimesThatAreNoNumbers) {
             std::string::npos);
   EXPECT_NE(connect([](Message& answer) {
               if (auto* sensor = std::get_if<Sensor>(&answer)) sensor->time = kNaN;
-            }).find("no numbers"),
+            }).find("not numbers"),
             std::string::npos);
 }
 

@@ -139,7 +139,7 @@ Signal perceive_stage(Run& run) {
   task.replaces_last = true;
   if (task.attempts < kMostPlannedAnew * rules.rehearsal.most_attempts) return Signal::NotAsRehearsed;
   leave(run);
-  task.reason = "it does not come to stand as it was rehearsed";
+  task.reason = "it does not stand as in the rehearsal";
   return Signal::RoundsUsedUp;
 }
 

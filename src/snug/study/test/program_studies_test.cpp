@@ -160,7 +160,7 @@ TEST(FindFailure, IsTheFirstThingThatWentWrong) {
   MonteCarloResult repeated;
   repeated.count = 5;
   repeated.failed = 2;
-  EXPECT_EQ(find_failure(result, repeated, true), "2 of 5 repeated runs did not reach their end");
+  EXPECT_EQ(find_failure(result, repeated, true), "2 of 5 repeated runs did not finish");
   result.failure.text = "it stopped";
   EXPECT_EQ(find_failure(result, repeated, true), "it stopped");
 }

@@ -255,7 +255,7 @@ TEST(FitClock, ExpectsOfAClockWhatClocksAre) {
 }
 
 TEST(NoClock, IsSaidInWords) {
-  EXPECT_STREQ(describe(NoClock::NothingInCommon), "the two have too little in common");
+  EXPECT_STREQ(describe(NoClock::NothingInCommon), "the signals have too little in common");
   EXPECT_STREQ(describe(NoClock::NothingMoves), "nothing moves");
   EXPECT_STREQ(describe(NoClock::TooUnlike), "no shift makes the two alike");
 }
