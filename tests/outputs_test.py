@@ -574,7 +574,7 @@ class ExitCodes(Folder):
                 result = snug("compare", scenario, "--sequences", "one", "--agents", "margin", *items)
                 self.assertEqual(result.returncode, code, result.stderr)
                 self.assertEqual(json.loads(result.stdout)["rows"][0]["failure"], failure)
-                self.assertEqual("1 of 1 sessions did not reach their end" in result.stderr, code == 1)
+                self.assertEqual("1 of 1 sessions did not finish" in result.stderr, code == 1)
 
     def test_monte_carlo_with_a_run_that_does_not_reach_its_end_is_exit_1(self):
         program = self.folder / "far.csv"

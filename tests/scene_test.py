@@ -104,7 +104,7 @@ class Scenes(unittest.TestCase):
             if words:
                 for mine, theirs in zip(rest["bodies"][0]["X_WB"]["p"], whole["bodies"][0]["X_WB"]["p"]):
                     self.assertAlmostEqual(mine, theirs, places=12)
-        self.assert_refused(snug("simulate", scene, "--resume", record, "-o", record, "--until", 2), "-o", "go on from")
+        self.assert_refused(snug("simulate", scene, "--resume", record, "-o", record, "--until", 2), "-o", "continue from")
         self.assert_refused(snug("simulate", scene, "--resume-at", 1), "--resume-at")
         self.assert_refused(snug("simulate", scene, "--resume", record), "before the end of the run")
         self.assert_refused(snug("simulate", scene, "--resume", self.folder / "no.h5", "--until", 2), "no.h5")

@@ -1,4 +1,4 @@
-// Drop: recordings and reports that are dragged onto the page: opened in the place of what is shown, or laid over it.
+// Drop: recordings and reports that are dragged onto the page: one half replaces what is shown, the other overlays it.
 
 import { decodeBase64, decodeReplay } from "./replay/decode";
 import { ReplayError } from "./replay/errors";
@@ -37,7 +37,7 @@ export interface DropTarget {
 
 /** Shows where to drop while a file is dragged over the page, and opens what is dropped. */
 export function acceptDrops(target: DropTarget): void {
-  const open = make("div", "drop-half", make("b", "", "open"), "in the place of what is shown");
+  const open = make("div", "drop-half", make("b", "", "open"), "replaces what is shown");
   const over = make("div", "drop-half", make("b", "", "lay over"), "this run, as wire boxes and dashed curves");
   const overlay = make("div", "drop", open, over);
   overlay.hidden = true;

@@ -58,7 +58,7 @@ model::Scenario load_with_overrides(const SimulateOptions& options) {
   apply(options.physics, scenario);
   if (options.resume) scenario.initial_state = model::InitialState{*options.resume, options.resume_at};
   if (options.resume_at && !options.resume) {
-    throw InputError("command line", "--resume-at", "without --resume", "a recording to go on from");
+    throw InputError("command line", "--resume-at", "without --resume", "a recording to continue from");
   }
   return scenario;
 }
@@ -93,7 +93,7 @@ runs::RunOptions make_run_options(const SimulateOptions& options, const model::S
 NamedFiles files_of(const SimulateOptions& options, const model::Scenario& scenario) {
   NamedFiles files = files_of(options.scenario, options.changes, scenario);
   add_file(files, "--program", options.program);
-  if (scenario.initial_state) files.push_back({"the recording to go on from", scenario.initial_state->recording});
+  if (scenario.initial_state) files.push_back({"the recording to continue from", scenario.initial_state->recording});
   return files;
 }
 

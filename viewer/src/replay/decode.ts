@@ -97,7 +97,7 @@ function checkChannel(meta: ChannelMeta, dataBytes: number): void {
   const isSound =
     typeof name === "string" && Array.isArray(columns) && columns.length > 0 && whole(rows) && whole(offset) &&
     whole(bytes) && quantum > 0 && (encoding === "delta" || encoding === "raw");
-  if (!isSound) throw new ReplayError("This recording is broken", `the entry of channel "${name}" makes no sense.`, REMAKE);
+  if (!isSound) throw new ReplayError("This recording is broken", `the entry of channel "${name}" is invalid.`, REMAKE);
   // Every value takes at least one byte, so a count of rows that the data cannot hold is found before memory is taken.
   if (offset + bytes > dataBytes || rows * columns.length > bytes) {
     throw new ReplayError("This recording is broken", `channel "${name}" reaches beyond the end of the data.`, REMAKE);
@@ -187,6 +187,6 @@ export function decodeBase64(text: string): Uint8Array {
     for (let i = 0; i < binary.length; ++i) bytes[i] = binary.charCodeAt(i);
     return bytes;
   } catch {
-    throw new ReplayError("This recording is broken", "what the page holds of it is not base64.", REMAKE);
+    throw new ReplayError("This recording is broken", "its data in the page are not base64.", REMAKE);
   }
 }

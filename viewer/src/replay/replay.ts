@@ -102,9 +102,9 @@ export class Replay {
     this.bodyPresent_ = this.header.bodies.map((_, k) => this.channels_.get(`body.${k}.present`));
     this.contacts_ = this.findContacts();
     if (this.header.interrupted) {
-      this.warnings.push("The run was ended early by who watched it.");
+      this.warnings.push("A viewer ended the run early.");
     } else if (!this.header.complete) {
-      this.warnings.push("The run did not end in order: it was killed, failed, or was still running.");
+      this.warnings.push("The run did not finish: it was killed, failed, or was still running.");
     }
   }
 

@@ -32,7 +32,7 @@ const ADVICE: Record<string, string> = {
   "off its place": "boxes are larger, or stand elsewhere, than the scenario says: measure them (snug identify, snug perceive)",
   "neighbour moved": "boxes are larger, or stand elsewhere, than the scenario says: measure them (snug identify, snug perceive)",
   "protective stop": "the robot's limits end motions: a lower tempo (--tempo), or another place of the container",
-  "view blocked": "something stays between camera and container",
+  "view blocked": "something stands between camera and container",
   "bad picture": "the camera gives too few points",
 };
 
@@ -88,7 +88,7 @@ export function summarizeSession(header: Header): SessionSummary | null {
     filling: result?.filling_degree_percent ?? null,
     perHour: seconds > 0 ? (3600 * packed) / seconds : null,
     packed, came: came.length, ordered: boxes.length, lost,
-    ended: result?.failure || ended || (header.interrupted ? "ended early, by who watched it" : header.complete ? "in order" : "it did not end in order"),
+    ended: result?.failure || ended || (header.interrupted ? "ended early by a viewer" : header.complete ? "in order" : "it did not finish"),
     refused, help: helpOf(header, refused, boxes.length),
   };
 }

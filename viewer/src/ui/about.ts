@@ -40,7 +40,7 @@ function facts(replay: Replay): HTMLElement {
     ["recorded", `every ${milliseconds(h.record_period)} ms, ${replay.frames} frames, ${(replay.size / 1e6).toFixed(2)} MB in this page`],
     ["simulated", seconds(h.speed?.duration_s ?? replay.end - replay.start)],
     ["computed in", h.speed && h.speed.wall_s > 0 ? `${seconds(h.speed.wall_s)}, ${h.speed.real_time_factor.toFixed(0)} times as fast as it happens` : "-"],
-    ["ended", h.result?.failure || endOfSession(replay) || (h.complete ? "in order" : h.interrupted ? "early, by who watched it" : "not in order")],
+    ["ended", h.result?.failure || endOfSession(replay) || (h.complete ? "in order" : h.interrupted ? "early, by a viewer" : "not in order")],
   ];
   return make("section", "", make("h3", "", "What ran"), table([], rows));
 }
@@ -166,7 +166,7 @@ export class About {
     this.replays.forEach((replay, k) => {
       if (k > 0 && this.tab_ === "container") return;
       const parts = this.parts(replay).filter((part) => part !== null);
-      const title = this.replays.length > 1 ? [make("h2", "", k === 0 ? `First: ${replay.header.name}` : `Laid over it: ${replay.header.name}`)] : [];
+      const title = this.replays.length > 1 ? [make("h2", "", k === 0 ? `First: ${replay.header.name}` : `Overlaid: ${replay.header.name}`)] : [];
       columns.append(make("div", this.tab_ === "run" ? "flow" : "", ...title, ...parts));
     });
     this.element.replaceChildren(make("div", "card wide", bar, columns));

@@ -359,7 +359,7 @@ export class Plots {
   /** Writes the numbers of all curves at the time under the mouse, else at the time cursor. */
   private read(): void {
     const time = this.hover_ ?? this.player.time;
-    this.when_.textContent = this.hover_ === null ? `numbers at ${time.toFixed(3)} s` : `under the mouse, ${time.toFixed(3)} s`;
+    this.when_.textContent = this.hover_ === null ? `values at ${time.toFixed(3)} s` : `under the mouse, ${time.toFixed(3)} s`;
     for (const { text, value, replay } of this.readings_) {
       const shown = digits(value(replay.frameAt(time)));
       if (text.textContent !== shown) text.textContent = shown;

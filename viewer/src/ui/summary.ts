@@ -77,7 +77,7 @@ export function fillBars(replay: Replay, second: Replay | null, isLarge = false)
   if (theirs !== null) rows.push({ name: "laid over it", about: second!.header.name, percent: theirs, isOurs: true, hint: "Counted as this run" });
   agentsOf(table ?? { filling_percent: 0, boxes: null, same_boxes_percent: null }).forEach(({ agent, about, filling_percent }, k) => {
     if (!table) return;
-    rows.push({ name: agent, about: about || "as its source prints it", percent: filling_percent, isOurs: false, hint: `Reported of ${agent}${about ? ` (${about})` : ""}, as its source prints it` });
+    rows.push({ name: agent, about: about || "as its source states it", percent: filling_percent, isOurs: false, hint: `Reported of ${agent}${about ? ` (${about})` : ""}, as its source states it` });
     if (k > 0 || table.same_boxes_percent === null) return;
     const boxes = table.boxes === null ? "the same boxes" : `the same ${table.boxes} boxes`;
     rows.push({ name: "", about: `${boxes}, counted as this run`, percent: table.same_boxes_percent, isOurs: false, hint: `What the boxes of ${agent} fill by the sizes and the container of the scenario` });
@@ -91,7 +91,7 @@ export function fillBars(replay: Replay, second: Replay | null, isLarge = false)
     row.title = hint;
     bars.append(row);
   }
-  if (isLarge && table) bars.append(make("p", "note", "Rows of others are as their source prints them; what is counted as this run is by the sizes of the boxes over the inner size of the container."));
+  if (isLarge && table) bars.append(make("p", "note", "Rows of others show what their source states. \"Counted as this run\" means sizes of the boxes over the inner size of the container."));
   return bars;
 }
 

@@ -142,7 +142,7 @@ export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void 
       stage.markWrong([]);
       showNumbers();
       if (scene.has_robot) await reach.load(fileName(), drawn, () => drawn === text.value);
-      else reach.clear("This cell has no robot: its tool moves by itself, wherever it has to be.");
+      else reach.clear("This cell has no robot: its tool moves by itself and reaches everything.");
     } catch (error) {
       reach.clear(shell.say(error));
     }
@@ -150,7 +150,7 @@ export function makeCell(shell: Shell): { element: HTMLElement; refresh(): void 
 
   /** The part goes there, in the text; what could not be drawn before is moved with it. */
   async function move(key: string, to: Place): Promise<void> {
-    if (moves.size > 0 && text.value !== writtenHere) return shell.tell("The text has a mistake: mend it first.", true);
+    if (moves.size > 0 && text.value !== writtenHere) return shell.tell("The text has a mistake: correct it first.", true);
     moves.set(key, { key, position_mm: to.position, yaw_deg: to.yaw });
     const asked = [...moves.values()];
     const done = await shell.attempt(() => api.move(fileName(), base, asked));

@@ -121,7 +121,7 @@ export class DecisionView {
 
   private async say(order: string): Promise<void> {
     const done = await this.shell_.attempt(() => api.operate(this.run_!.name, order));
-    if (done) this.said_.textContent = `Said. As a command in the folder: ${done.command}`;
+    if (done) this.said_.textContent = `Sent. As a command in the folder: ${done.command}`;
   }
 
   /** What may be said now. */
@@ -141,7 +141,7 @@ export class DecisionView {
       : [];
     const focused = this.operator.contains(document.activeElement) ? document.activeElement!.textContent : null;
     this.operator.replaceChildren(make("legend", "", "Step in"),
-      make("p", "", isHeld ? `${run.held} is planned and waits for what you say.` : "The run goes on by itself. What you say is done at the next box."),
+      make("p", "", isHeld ? `${run.held} is planned and waits for your order.` : "The run continues by itself and follows your order at the next box."),
       make("div", "bar", ...buttons, ...out), this.said_);
     if (focused) [...this.operator.querySelectorAll("button")].find((one) => one.textContent === focused)?.focus();
   }

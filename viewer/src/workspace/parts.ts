@@ -146,7 +146,7 @@ export function makeParts(shell: Shell, cell: CellText): { element: HTMLElement;
   const sheet = make("details", "", make("summary", "", "Cup by its data sheet"),
     make("div", "bar", field("Diameter of the lip in mm", diameter), field("Folds", folds), field("Material", material), field("Lip", lip), field("Vacuum in kPa", vacuum), field("Stroke in mm", stroke),
       action("Use this cup", putSheet)));
-  const element = make("fieldset", "numbers edits", make("legend", "", "Parts of the trade"),
+  const element = make("fieldset", "numbers edits", make("legend", "", "Catalogue, cups and arms"),
     field("Container of the catalogue", container), field("Cup of the catalogue", cup), sheet,
     field("Choose a URDF and its meshes", files), field("Arm of the folder", arm), field("Link that carries the tool", tool), action("Use this arm", putArm), said);
   return {

@@ -49,7 +49,7 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
   // It stays where it is while all around it changes: who wants to stop a run has to hit it.
   const decisions = new DecisionView(shell);
   const stopNow = action("Stop at once", async () => void (await shell.attempt(() => api.stopNow(shown))), "danger");
-  stopNow.title = "The program ends now, whatever it does; a robot that it moves stands within 0.2 s";
+  stopNow.title = "The program ends at once; a robot that it moves stands still within 0.2 s";
   const stop = action("Stop", async () => void (await shell.attempt(() => api.stop(shown))));
   const elsewhere = make("span", "", "Another program started this run: it can be stopped there.");
   const shownCommand = scrollable(make("pre", "command"));
@@ -208,7 +208,7 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
   name.addEventListener("input", () => (isNameTyped = true));
   const ofPlants = [field("Plants", plants), field("First plant seed", seed)];
   const ofServed = [field("Address", address), field("Perception", perception)];
-  const ofRobot = [field("Where boxes are told", observe), make("label", "check", moves, "A robot elsewhere moves")];
+  const ofRobot = [field("Address that reports the boxes", observe), make("label", "check", moves, "A robot elsewhere moves")];
   function showPlant(): void {
     for (const one of ofPlants) one.hidden = isServed();
     for (const one of ofServed) one.hidden = !isServed();

@@ -186,7 +186,7 @@ describe("files that are dropped", () => {
     );
   }
 
-  it("open in the place of what is shown, or lie over it; what is no recording is said", async () => {
+  it("replace what is shown or overlay it; other files are refused", async () => {
     const { page, errors, close } = await open(browser, pageWith("drop", [smallHeader(100)]));
     await drop(page, "other.snug", smallHeader(50, { name: "dropped" }), 0.2);
     await expect.poll(() => page.title()).toBe("snug: dropped");
@@ -202,7 +202,7 @@ describe("files that are dropped", () => {
       await page.keyboard.press("i");
       return page.textContent(".about");
     };
-    await expect.poll(about, { timeout: 10_000 }).toContain("Laid over it: in a report");
+    await expect.poll(about, { timeout: 10_000 }).toContain("Overlaid: in a report");
     await page.keyboard.press("Escape");
     await drop(page, "notes.txt", new TextEncoder().encode("no recording"), 0.2);
     await expect.poll(() => page.locator(".toast").textContent()).toMatch(/not a recording of snug/);

@@ -272,7 +272,7 @@ describe("a run of snug ui", () => {
     await page.getByText(/snug pack by-page.yaml --items mine.csv --sequence long .*--live run-1.live/).waitFor();
     await page.getByLabel("Hold the first box").check(); // it waits, however slow the browser is
     await page.getByRole("button", { name: "Start", exact: true }).click();
-    await page.getByText(/is planned and waits for what you say/).waitFor();
+    await page.getByText(/is planned and waits for your order/).waitFor();
     await page.getByRole("button", { name: "Choose" }).first().waitFor();
     await picture(page, "workspace-held");
     await page.getByRole("button", { name: "Another place" }).click();

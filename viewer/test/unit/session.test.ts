@@ -55,7 +55,7 @@ describe("summarizeSession", () => {
     expect(summarizeSession(header({ settings: { controller: "fast" } }))).toBeNull();
     const killed = summarizeSession(header({ result: null, speed: null, complete: false, settings: { agent: "margin" } }))!;
     expect([killed.filling, killed.perHour, killed.packed, killed.ordered]).toEqual([null, null, 0, 0]);
-    expect(killed.ended).toBe("it did not end in order");
+    expect(killed.ended).toBe("it did not finish");
     expect(summarizeSession(header({ result: { ...header().result!, failure: "protective stop" } }))!.ended).toBe("protective stop");
   });
 });
