@@ -117,7 +117,7 @@ def say(port, data, number):
 
 
 class Server:
-    """A verb that serves, until it is left: then it has to end in order."""
+    """A verb that serves, until it is left: then it has to end cleanly."""
 
     def __init__(self, program, words, until, folder):
         self.said = open(folder / "said.txt", "w+", encoding="utf-8", errors="replace")  # noqa: SIM115

@@ -257,7 +257,7 @@ class Arm:
         """All ways to reach it, limits not looked at."""
 
 class Packer:
-    """A built-in agent and the container that it packs on paper. `sequence` is known to the agent "offline" alone."""
+    """A built-in agent and the container that it packs without executing. `sequence` is known to the agent "offline" alone."""
 
     def __init__(self, scenario: Scenario, agent: str = ..., *, sequence: str = ..., seed: int = ...,
                  decision_time: float = ...) -> None: ...

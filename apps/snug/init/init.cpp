@@ -48,7 +48,7 @@ struct InitOptions {
 void require_free(const fs::path& file) {
   std::error_code error;
   if (fs::exists(fs::symlink_status(file, error)))
-    throw InputError(file.string(), "", "a file that is there already: not overwritten", "another folder");
+    throw InputError(file.string(), "", "an existing file, which is not overwritten", "another folder");
 }
 
 int run_init(const InitOptions& options) {

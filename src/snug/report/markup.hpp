@@ -45,7 +45,7 @@ class Markup {
 [[nodiscard]] Markup line_break();
 /// `path`: of a file, from the folder of the page.
 [[nodiscard]] Markup link(std::string_view path, const Markup& content);
-/// Opens when its summary is pressed; always open on paper.
+/// Opens when its summary is pressed; always open when printed.
 [[nodiscard]] Markup details(const Markup& summary, const Markup& content);
 [[nodiscard]] Markup section(const Markup& content);
 [[nodiscard]] Markup figure(const Markup& caption, const Markup& drawing);

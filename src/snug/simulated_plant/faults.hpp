@@ -20,7 +20,7 @@ enum class FaultKind {
 
 struct Fault {
   FaultKind kind = FaultKind::NoSeal;
-  int item = 1;  ///< of the items that the plant brings, the how-manieth, from 1
+  int item = 1;  ///< number of the item among those that the plant brings, from 1
   bool operator==(const Fault&) const = default;
 };
 
