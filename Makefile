@@ -121,7 +121,7 @@ figures: build ## make the numbers that README and the documents state, and writ
 pictures: build setup-test ## draw the pictures of the documents that show runs and pages, some minutes; NAME="report kitchen"
 	@python3 tools/pictures.py $(NAME)
 
-docs: setup-docs ## check every link of the documents, build the documentation site: build/site/index.html
+docs: setup-docs build ## check every link of the documents, build the documentation site with every verb's options: build/site/index.html; after make demo with a gallery
 	@python3 tools/check_docs.py . && python3 tools/build_site.py build/site
 
 clean: ## remove what the verbs built
