@@ -3,6 +3,7 @@
 tools/figures.py finds, replaces and names blocks as it says. SNUG names the program."""
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -55,6 +56,29 @@ class Documents(unittest.TestCase):
     def test_a_figure_without_a_place_is_an_error(self):
         with self.assertRaisesRegex(figures.CannotMake, "figures: three"):
             figures.put({"three": "x"}, True)
+
+
+class Readme(unittest.TestCase):
+    """What README repeats outside its blocks is what the blocks say."""
+
+    def setUp(self):
+        self.text = (figures.ROOT / "README.md").read_text(encoding="utf-8")
+        self.blocks = {match[2]: match[3] for path in figures.documents() for match in figures.BLOCK.finditer(path.read_text(encoding="utf-8"))}
+
+    def test_the_demonstrators_programs(self):
+        row = next(line for line in self.blocks["acceptance"].splitlines() if line.startswith("| run on the real cell"))
+        packed, boxes = (sum(map(int, counts)) for counts in zip(*re.findall(r"\| (\d+) of (\d+) (?=\|)", row)))
+        self.assertIn(f"| {packed} of {boxes} boxes packed", self.text)
+        self.assertIn(f"re-picked boxes lie {re.search(r'off by ([0-9.]+) mm', row)[1]} mm off on average", self.text)
+
+    def test_the_filling(self):
+        filled = re.search(r"may leave out two boxes \| ([0-9.]+) %", self.blocks["sessions"])[1]
+        self.assertIn(f"instead of {filled} %", self.text)
+
+    def test_the_tables_of_sessions_agree(self):
+        short = re.search(r"may leave out two boxes \| (.*?) % \((.*?)\)", self.blocks["sessions"]).groups()
+        long = re.search(r"\| snug, six plants \|.*\| ([0-9.]+) \(([^()]*)\) \|", self.blocks["sessions-by-sequence"]).groups()
+        self.assertEqual(short, long)
 
 
 class Made(unittest.TestCase):
