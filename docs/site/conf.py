@@ -22,4 +22,5 @@ def setup(app):
     """Diagrams of a language that the highlighter does not know stand as they are written."""
     from pygments.lexers.special import TextLexer  # pylint: disable=import-outside-toplevel
 
-    app.add_lexer("mermaid", TextLexer)
+    for language in ("mermaid", "csv"):
+        app.add_lexer(language, TextLexer)
