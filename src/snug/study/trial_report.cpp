@@ -234,7 +234,7 @@ std::string format_pack_head(const std::string& sequence, const session::Session
       "                 planned place, mm       turned      insertion          success  error, true pose  peak force, "
       "N  "
       "moved  decided, rehearsed         seconds of the plant\n"
-      "box          x_T     y_T     z_T  up                                  predicted     mm    deg     pred.  happ.  "
+      "box          x_T     y_T     z_T  up                                  predicted     mm    deg     pred.  meas.  "
       "   "
       "mm      s      s  times  cycle travel  carry regrasp insert  push  wait\n",
       sequence, session.agent, session.decision.seed, address.empty() ? fmt::format("seed {}", plant.seed) : address,
