@@ -46,7 +46,7 @@ demo: build ## pack the five sequences of the report as they come, and write a r
 test: setup-test ## build and run every test; MODULE=cup for one module's
 	@scripts/test.sh $(MODULE)
 
-acceptance: build ## run the demonstrator's own programs in FOLDER, print the table of docs/results.md
+acceptance: build ## run the demonstrator's own programs in FOLDER, print the table of docs/trust.md
 	@python3 tools/acceptance.py "$(FOLDER)"
 
 python: setup-python ## build the Python module and install it: into VENV=DIR, else for /usr/bin/python3

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""acceptance_test.py: the table of the demonstrator's programs in docs/results.md is what tools/acceptance.py prints. SNUG names the program."""
+"""acceptance_test.py: the table of the demonstrator's programs in docs/trust.md is what tools/acceptance.py prints. SNUG names the program."""
 import re
 import subprocess
 import sys
@@ -30,7 +30,7 @@ class Acceptance(unittest.TestCase):
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         printed = rows(result.stdout)
         self.assertEqual(len(printed), 2)
-        self.assertEqual(printed, rows((ROOT / "docs" / "results.md").read_text()))
+        self.assertEqual(printed, rows((ROOT / "docs" / "trust.md").read_text()))
 
     def test_folder_without_programs_is_refused_with_where_they_are(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -30,7 +30,7 @@ sequences:
   - name: two
     items: [{parcel: b1, up: Z}, {parcel: b2, up: X}]
 """
-WRITER_BYTE, COMMIT_BYTE = 2**62, 2**62 + 1  # docs/formats.md, "While a run goes on"
+WRITER_BYTE, COMMIT_BYTE = 2**62, 2**62 + 1  # docs/formats.md, "Recordings of running and of killed runs"
 FLOCK = "hhqqi"  # struct flock: type, whence, start, length, process
 
 

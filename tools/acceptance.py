@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""acceptance.py FOLDER: runs the demonstrator's own packing programs and prints the table of docs/results.md of how far to trust the simulation.
+"""acceptance.py FOLDER: runs the demonstrator's own packing programs and prints the table of docs/trust.md of how far to trust the simulation.
 
 FOLDER holds the files of src/states/BoxPoses in the public repository MaartenJongeneel/FSM-Bin-Packing: posesNreal.csv ran on
 the real cell, posesNsim.csv (sequence 1: poses.csv) was made for simulation. SNUG names the program, if not build/snug.
