@@ -4,6 +4,6 @@
 set -eu
 build="$(realpath "$1")"
 venv="$build/gymnasium"
-"$(dirname "$0")/test-venv.sh" "$venv" "gymnasium" "gymnasium>=1.1 numpy<2" --system-site-packages || exit $?
+"$(dirname "$0")/test-venv.sh" "$venv" "gymnasium" "gymnasium>=1.1 numpy" --system-site-packages || exit $?
 cd "$(dirname "$0")/../python/tests"
 PYTHONPATH="$build/python" exec "$venv/bin/python" -B -m pytest -q -p no:cacheprovider test_gymnasium.py

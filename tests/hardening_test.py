@@ -57,7 +57,8 @@ class BillOfMaterials(unittest.TestCase):
                               env={**os.environ, "SOURCE_DATE_EPOCH": "1700000000"}))
         self.assertEqual((bill["spdxVersion"], bill["creationInfo"]["created"]), ("SPDX-2.3", "2023-11-14T22:13:20Z"))
         names = {package["name"] for package in bill["packages"]}
-        self.assertLessEqual({"snug", "libc6", "libstdc++6", "libfmt9", "libeigen3-dev", "three"}, names)
+        self.assertLessEqual({"snug", "libc6", "libstdc++6", "libeigen3-dev", "three"}, names)
+        self.assertTrue(any(name.startswith("libfmt") for name in names), "its number is that of the release of Debian")
         ids = [package["SPDXID"] for package in bill["packages"]]
         self.assertEqual(len(ids), len(set(ids)))
         related = {relation["relatedSpdxElement"] for relation in bill["relationships"]}

@@ -94,7 +94,7 @@ class Shell(unittest.TestCase):
                               text=True, check=False, env={**os.environ, "MANWIDTH": "100", "LC_ALL": "C.UTF-8"})
         self.assertEqual((page.returncode, page.stderr), (0, ""))
         for text in ("NAME", "snug pack", "--decision-time", "of margin, contact-aware", "snug cup evaluate scenarios/examples/"):
-            self.assertIn(text, page.stdout)
+            self.assertIn(text, " ".join(page.stdout.split()))  # lines end elsewhere in another release of groff
 
 
 if __name__ == "__main__":
