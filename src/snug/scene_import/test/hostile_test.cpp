@@ -39,7 +39,7 @@ TEST(HostileScene, EntitiesAreNotExpanded) {
 TEST(HostileScene, DepthsEnd) {
   const std::string deep = repeated("<body>", 300) + "<geom size=\"1\"/>" + repeated("</body>", 300);
   expect_refusal("<mujoco><worldbody>" + deep + "</worldbody></mujoco>",
-                 tinyxml2::TINYXML2_MAX_ELEMENT_DEPTH < 300 ? "DEPTH" : "more than 200 deep");
+                 TINYXML2_MAX_ELEMENT_DEPTH < 300 ? "DEPTH" : "more than 200 deep");
   expect_refusal("<mujoco><worldbody>" + repeated("<body>", 5000), "scene.xml:1");
   std::string models = "<link name=\"l\"/>";
   for (int i = 0; i < 80; ++i) models = "<model name=\"m\">" + models + "</model>";
