@@ -84,9 +84,12 @@ class BagReader {
     finish_wrench();
     const record::ArchiveRecording& recording = imported_.recording;
     if (recording.motion_capture.times.empty() && recording.force_torque.times.empty() && recording.robot.times.empty())
-      throw InputError(name_, "", "no two messages that could be taken" + list_left(),
-                       "sensor_msgs/JointState, geometry_msgs/WrenchStamped, geometry_msgs/PoseStamped or "
-                       "tf2_msgs/TFMessage");
+      throw InputError(name_, "", "no two messages to take" + list_left("; there are "),
+                       "JointState, WrenchStamped, PoseStamped, TransformStamped or TFMessage");
+    if (!left_.empty()) imported_.remarks.push_back("left out" + list_left(": "));
+    if (without_rotation_ > 0)
+      imported_.remarks.push_back(
+          fmt::format("poses whose quaternion is (0, 0, 0, 0) count as lost: {}", without_rotation_));
     return std::move(imported_);
   }
 
@@ -94,10 +97,16 @@ class BagReader {
   [[noreturn]] void fail(const std::string& got, const std::string& expected) const {
     throw InputError(name_, fmt::format("message {}", line_), got, expected);
   }
-  [[nodiscard]] std::string list_left() const {
-    std::string text;
-    for (const std::string& one : left_) text += (text.empty() ? "; there are " : ", ") + one;
-    return printable(text, kLongestMessage / 2);
+  /// Topics with their kinds, or where they are many the kinds with how many topics each has.
+  [[nodiscard]] std::string list_left(const std::string& before) const {
+    constexpr std::size_t kLongestList = 100;
+    std::string topics, kinds;
+    for (const auto& [kind, names] : left_) {
+      for (const std::string& name : names) topics += (topics.empty() ? "" : ", ") + name + " (" + kind + ")";
+      kinds += (kinds.empty() ? "" : ", ") + (names.size() == 1 ? kind : fmt::format("{} of {}", names.size(), kind));
+    }
+    if (topics.empty()) return "";
+    return before + printable(topics.size() <= kLongestList ? topics : kinds, kLongestMessage / 2);
   }
 
   [[nodiscard]] std::string text_of(const Json& value) const {
@@ -115,7 +124,7 @@ class BagReader {
     const auto word = row[0].get<std::string>();
     const std::string topic = text_of(row[1]);
     if (word == "left") {
-      left_.insert(topic + " (" + text_of(row[2]) + ")");
+      left_[text_of(row[2])].insert(topic);
       return;
     }
     if (!row[2].is_number_integer()) fail("no time", "a time in ns");
@@ -123,6 +132,7 @@ class BagReader {
     if (word == "joints" && row.size() == 7) return read_joints(topic, time, row);
     if (word == "wrench" && row.size() == 5) return read_wrench(topic, time, row[4]);
     if (word == "pose" && row.size() == 5) {
+      pose_frames_[text_of(row[3])].insert(topic);
       if (const auto pose = read_pose(row[4])) poses_[topic].add(time, *pose);
       return;
     }
@@ -130,7 +140,7 @@ class BagReader {
     fail("a line that is none", "a message");
   }
 
-  /// Nothing where a number is missing.
+  /// Nothing where a number is missing, or the rotation, which trackers leave at zero for a body that they lost.
   std::optional<Pose> read_pose(const Json& values) {
     if (!values.is_array() || values.size() != 7) fail("a pose without seven numbers", "position and quaternion");
     std::array<double, 7> v{};
@@ -138,6 +148,10 @@ class BagReader {
     if (!std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); })) return std::nullopt;
     const Vector3 p(v[0], v[1], v[2]);
     if (!(p.cwiseAbs().maxCoeff() <= 1000.0)) fail("a position beyond 1 km", "metres");
+    if (v[3] == 0.0 && v[4] == 0.0 && v[5] == 0.0 && v[6] == 0.0) {
+      ++without_rotation_;
+      return std::nullopt;
+    }
     const Quaternion quat = read_quaternion(v[6], v[3], v[4], v[5], name_, fmt::format("message {}", line_));
     return Pose{quat.toRotationMatrix(), p};
   }
@@ -171,7 +185,7 @@ class BagReader {
       imported_.remarks.push_back("joints, base to tool: " + printable(joint_list_, 200));
     }
     if (topic != joint_topic_) {
-      left_.insert(topic + " (joints, as " + joint_topic_ + ")");
+      left_["joints beside those of " + joint_topic_].insert(topic);
       return;
     }
     std::vector<double> values;
@@ -258,7 +272,7 @@ class BagReader {
                        "the one in which poses are wanted");
     }
     for (const std::string& root : roots)
-      imported_.remarks.push_back("poses of /tf are in '" + printable(root, 60) + "'");
+      imported_.remarks.push_back("poses of frames are in '" + printable(root, 60) + "'");
   }
 
   /// "/vrpn_mocap/box1/pose" is box1.
@@ -278,6 +292,7 @@ class BagReader {
     std::erase_if(poses_, [](const auto& one) { return one.second.times.size() < 2; });
     if (!hints_.tool.empty()) take_tool();
     if (recording.robot.times.size() < 2) recording.robot = {};
+    tell_pose_frames();
     if (poses_.empty()) return;
     const Stream* most = nullptr;
     for (const auto& [name, stream] : poses_)
@@ -293,6 +308,19 @@ class BagReader {
         log.bodies.push_back(std::move(track));
     }
     order_bodies(log, name_);
+  }
+
+  /// Poses of topics are taken as they are, in whatever frame each has.
+  void tell_pose_frames() {
+    std::erase_if(pose_frames_, [](const auto& one) { return one.first.empty(); });
+    if (pose_frames_.empty()) return;
+    std::string frames;
+    for (const auto& [frame, topics] : pose_frames_)
+      frames +=
+          fmt::format("{}'{}'{}", frames.empty() ? "" : ", ", frame,
+                      pose_frames_.size() == 1 ? "" : " (" + *topics.begin() + (topics.size() > 1 ? ", ...)" : ")"));
+    imported_.remarks.push_back("poses of topics are in " + printable(frames, 150) +
+                                (pose_frames_.size() > 1 ? ": they stay so" : ""));
   }
 
   /// The tool on the clock of the joints; on its own where there are none.
@@ -342,7 +370,9 @@ class BagReader {
   std::map<std::string, record::WrenchLog> wrenches_;
   std::vector<std::string> joints_;
   std::string joint_topic_, joint_list_;
-  std::set<std::string> left_;
+  std::map<std::string, std::set<std::string>> left_;         ///< topics by kind
+  std::map<std::string, std::set<std::string>> pose_frames_;  ///< topics of poses by the frame of their headers
+  std::size_t without_rotation_ = 0;
 };
 
 /// Runs Python on the program, what it says into `said`; its exit code, or -1 and why it did not start.

@@ -5,6 +5,7 @@ namespace snug::archive_import::internal {
 
 const char* const kBagProgram =
     R"PY("""Writes the messages of a bag that snug takes, one a line (JSON). Arguments: the bag, the file to write."""
+import contextlib
 import json
 import math
 import sys
@@ -59,13 +60,15 @@ def rows_of(topic, kind, message, log_time):
     elif kind == "geometry_msgs/WrenchStamped":
         wrench = part(message, "wrench")
         yield ["wrench", topic, time, frame, numbers(part(wrench, "force"), "x", "y", "z") + numbers(part(wrench, "torque"), "x", "y", "z")]
-    elif kind in ("geometry_msgs/PoseStamped", "foxglove.PoseInFrame"):
+    elif kind in ("geometry_msgs/PoseStamped", "geometry_msgs/PoseWithCovarianceStamped", "foxglove.PoseInFrame"):
         pose = part(message, "pose")
+        if kind.endswith("CovarianceStamped"):
+            pose = part(pose, "pose")
         if kind.startswith("foxglove"):
             time, frame = nanoseconds(part(message, "timestamp"), log_time), str(part(message, "frame_id") or "")
         yield ["pose", topic, time, frame, numbers(part(pose, "position"), "x", "y", "z") + numbers(part(pose, "orientation"), "x", "y", "z", "w")]
-    elif kind in ("tf2_msgs/TFMessage", "tf/tfMessage", "foxglove.FrameTransforms"):
-        for one in part(message, "transforms") or []:
+    elif kind in ("tf2_msgs/TFMessage", "tf/tfMessage", "foxglove.FrameTransforms", "geometry_msgs/TransformStamped", "foxglove.FrameTransform"):
+        for one in [message] if kind in ("geometry_msgs/TransformStamped", "foxglove.FrameTransform") else part(message, "transforms") or []:
             if kind.startswith("foxglove"):
                 time, parent, child = nanoseconds(part(one, "timestamp"), log_time), part(one, "parent_frame_id"), part(one, "child_frame_id")
                 move, turn = part(one, "translation"), part(one, "rotation")
@@ -73,14 +76,16 @@ def rows_of(topic, kind, message, log_time):
                 head = part(one, "header")
                 time, parent, child = nanoseconds(part(head, "stamp"), log_time), part(head, "frame_id"), part(one, "child_frame_id")
                 move, turn = part(part(one, "transform"), "translation"), part(part(one, "transform"), "rotation")
-            yield ["transform", topic, time, str(parent).lstrip("/"), str(child).lstrip("/"), numbers(move, "x", "y", "z") + numbers(turn, "x", "y", "z", "w")]
+            yield ["transform", topic, time, str(parent).lstrip("/"), str(child or topic).lstrip("/"), numbers(move, "x", "y", "z") + numbers(turn, "x", "y", "z", "w")]
 
 
-WANTED = ("JointState", "WrenchStamped", "PoseStamped", "TFMessage", "tfMessage", "foxglove.PoseInFrame", "foxglove.FrameTransforms")
+WANTED = ("sensor_msgs/JointState", "geometry_msgs/WrenchStamped", "geometry_msgs/PoseStamped", "geometry_msgs/PoseWithCovarianceStamped",
+          "geometry_msgs/TransformStamped", "tf2_msgs/TFMessage", "tf/tfMessage", "foxglove.PoseInFrame", "foxglove.FrameTransform",
+          "foxglove.FrameTransforms")
 
 
 def is_wanted(kind):
-    return kind.replace("/msg/", "/").split("/")[-1] in WANTED
+    return kind.replace("/msg/", "/") in WANTED
 
 
 def of_mcap(path):
@@ -119,14 +124,38 @@ def of_mcap(path):
             yield from rows_of(channel.topic, schema.name, decoders[channel.id](message.data), message.log_time)
 
 
+def bag_of(path):
+    """What is opened: of a file whose folder describes it the folder, which has the types of its messages."""
+    if path.is_dir():
+        if not (path / "metadata.yaml").exists():
+            leave(2, "the folder has no metadata.yaml; " + files_of(path))
+        return path
+    beside = path.parent / "metadata.yaml"
+    if path.suffix == ".db3" and beside.exists() and path.name in beside.read_text(encoding="utf-8", errors="replace"):
+        return path.parent
+    return path
+
+
+def files_of(folder):
+    names = sorted(one.name for one in folder.iterdir() if one.suffix in (".mcap", ".db3", ".bag"))
+    return "give a bag itself: " + ", ".join(names[:3]) if names else "there is no bag in it"
+
+
 def of_bag(path):
     try:
         from rosbags.highlevel import AnyReader
         from rosbags.typesys import Stores, get_typestore
     except ImportError:
         leave(3, "rosbags")
-    folder = path.parent if path.suffix == ".db3" and (path.parent / "metadata.yaml").exists() else path
-    with AnyReader([folder], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
+    bag = bag_of(path)
+    try:
+        opened = AnyReader([bag], default_typestore=get_typestore(Stores.ROS2_HUMBLE))
+        opened.open()
+    except Exception as error:
+        if bag.is_dir() and "missing" in str(error):
+            leave(2, "metadata.yaml names files that are not in the folder; " + files_of(bag))
+        raise
+    with contextlib.closing(opened) as reader:
         wanted = [c for c in reader.connections if is_wanted(c.msgtype)]
         for connection in reader.connections:
             if connection not in wanted:
@@ -147,7 +176,7 @@ def main():
             for row in (of_mcap(path) if path.suffix.lower() == ".mcap" else of_bag(path)):
                 out.write(json.dumps(row, ensure_ascii=True) + "\n")
             for topic, kind in sorted(left):
-                out.write(json.dumps(["left", topic, kind]) + "\n")
+                out.write(json.dumps(["left", topic, kind.replace("/msg/", "/")]) + "\n")
     except Exception as error:  # what readers raise for files that are broken is of many kinds
         leave(2, f"{type(error).__name__}: {error}")
 
