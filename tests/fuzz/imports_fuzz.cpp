@@ -12,6 +12,11 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     archive_import::Hints hints;
     if (kind == 'w') hints.wrench = "ft_raw_wrench";
     if (kind == 'z') hints.up = archive_import::UpAxis::Z;
+    if (kind == 'r') {
+      hints.rate = 125.0;
+      hints.length_unit = "cm";
+      hints.rotation = "XYZ";
+    }
     const archive_import::Imported imported = archive_import::load(file.path(), hints);
     for (const std::string& remark : imported.remarks) SNUG_CHECK(is_utf8(remark), "remarks in UTF-8");
   });

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ struct ArchiveConvertOptions {
   std::string note, sequence;
   std::string up = "y";
   std::vector<std::string> renames;  ///< OLD=NEW
+  std::optional<double> rate;        ///< Hz
   archive_import::Hints hints;
 };
 struct ArchiveMergeOptions {
@@ -58,6 +60,7 @@ int import_measurements(const ArchiveConvertOptions& options) {
   OutputFile output = reserve(name_all("the measurements", options.inputs), options.output);
   archive_import::Hints hints = options.hints;
   hints.up = options.up == "z" ? archive_import::UpAxis::Z : archive_import::UpAxis::Y;
+  hints.rate = options.rate.value_or(0.0);
   hints.names = archive_import::parse_names(options.renames, "--rename");
   archive_import::Imported imported = archive_import::load_all({options.inputs.begin(), options.inputs.end()}, hints);
   record::ArchiveRecording& recording = imported.recording;
@@ -102,8 +105,9 @@ constexpr const char* kArchiveConvertHelp =
     R"(Each source of an archive becomes a separate table, since each has its own clock. Into an archive go CSV of OptiTrack's Motive, of RTDE
 (record.py, ur_rtde) and with the column names of mc_rtc, its flat binary logs (.flat), MCAP and bags of ROS (.mcap, .db3, .bag, a folder).
 Several files become one recording: each adds what the others lack. Bags need readers of PyPI in a Python that SNUG_PYTHON names; a
-message says what is missing. For a bag with a robot: --tool tool0 --wrench /force_torque_sensor_broadcaster/wrench. convert reports on stderr what it left out or
-assumed (docs/formats.md#measurements-of-other-programs).
+message says what is missing. For a bag with a robot: --tool tool0 --wrench /force_torque_sensor_broadcaster/wrench. Where a file lacks
+something, a message names the option that supplies it (--up, --length-unit, --rotation, --rate). convert reports on stderr what it left
+out or assumed (docs/formats.md#measurements-of-other-programs).
 Examples:
   snug archive convert measured.h5 -o tables
   snug export run.h5 --format csv -o log.csv
@@ -127,6 +131,13 @@ void add_archive_convert(const Verb& verb) {
       .one_each();
   part.option("--up", options.up, "AXIS", "vertical axis in files of Motive: y, its usual one, is turned to z; or z",
               one_of({"y", "z"}));
+  part.option("--length-unit", options.hints.length_unit, "UNIT",
+              "unit of a file of Motive whose header names none: m, cm, mm, in or ft",
+              one_of({"m", "cm", "mm", "in", "ft"}));
+  part.option("--rotation", options.hints.rotation, "ORDER",
+              "order of the angles of a file of Motive whose header names none, such as XYZ",
+              one_of({"XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"}));
+  part.option("--rate", options.rate, "HZ", "rows a second of RTDE without a column timestamp", positive());
   part.option("--tool", options.hints.tool, "TOPIC|FRAME", "in a bag: topic or frame with the poses of the tool");
   part.option("--wrench", options.hints.wrench, "NAME",
               "force sensor: topic of a bag, sensor of a flat log, columns of RTDE (ft_raw_wrench)");

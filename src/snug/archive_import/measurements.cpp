@@ -45,6 +45,38 @@ void refuse_utf16(std::string_view text, const std::string& name) {
     throw InputError(name, "", "text in UTF-16", "UTF-8: save the table as 'CSV UTF-8'");
 }
 
+/// A table that begins like none of those that are read: what its first line has, and how theirs begin.
+[[noreturn]] void refuse_unknown(std::string_view header, const std::string& name) {
+  constexpr std::size_t kMostWords = 4;
+  std::string words;
+  bool has_names = false;
+  std::size_t count = 0;
+  while (!header.empty() && count < kMostWords) {
+    const std::size_t end = std::min(header.find_first_of(",;\t"), header.size());
+    const std::string word(trim(header.substr(0, end)));
+    header.remove_prefix(std::min(end + 1, header.size()));
+    if (word.empty()) continue;
+    has_names = has_names || word.find_first_not_of("0123456789+-.eE") != std::string::npos;
+    words += (count++ == 0 ? "'" : ", '") + printable(word, 20) + "'";
+  }
+  const std::string got = count == 0  ? "an empty line"
+                          : has_names ? "a table that begins with " + words
+                                      : "numbers, no names of columns";
+  throw InputError(name + ":1", "t", "no such column: " + got,
+                   "'Format Version' of Motive, timestamp or actual_q_0 of RTDE, t of mc_rtc");
+}
+
+/// Has a log of mc_rtc its times?
+bool has_column_t(std::string_view header) {
+  const char separator = header.find(';') != std::string_view::npos ? ';' : ',';
+  while (!header.empty()) {
+    const std::size_t end = std::min(header.find(separator), header.size());
+    if (trim(header.substr(0, end)) == "t") return true;
+    header.remove_prefix(std::min(end + 1, header.size()));
+  }
+  return false;
+}
+
 Imported load_table(const fs::path& path, const Hints& hints) {
   const std::string name = path.string();
   if (ending_of(path) == ".flat")
@@ -57,7 +89,13 @@ Imported load_table(const fs::path& path, const Hints& hints) {
   check_utf8(text, name);
   const std::string_view table = without_byte_order_mark(text);
   if (internal::is_motive(table)) return internal::read_motive(table, name, hints);
+  if (internal::is_early_motive(table))
+    throw InputError(name + ":1", "", "an export of Tracking Tools, or of Motive before 1.2",
+                     "the CSV of Motive 1.2 or later: open the take there and export it again");
   if (internal::is_rtde(table)) return internal::read_rtde(table, name, hints);
+  std::string_view rest = table;
+  if (const std::string_view header = internal::take_line(rest); !table.empty() && !has_column_t(header))
+    refuse_unknown(header, name);
   Imported imported{validation::load_log(path), {}};
   ArchiveRecording& recording = imported.recording;
   recording.remarks.clear();

@@ -19,6 +19,21 @@ using record::PoseSample;
 
 constexpr std::size_t kMostHeaderLines = 20;
 
+struct MotiveUnit {
+  std::string_view name, word;  ///< of a header, of the hints
+  double metres;
+};
+constexpr std::array<MotiveUnit, 5> kMotiveUnits = {{{"Meters", "m", 1.0},
+                                                     {"Centimeters", "cm", 0.01},
+                                                     {"Millimeters", "mm", 0.001},
+                                                     {"Inches", "in", 0.0254},
+                                                     {"Feet", "ft", 0.3048}}};
+
+bool is_order_of_axes(std::string axes) {
+  std::sort(axes.begin(), axes.end());
+  return axes == "XYZ";
+}
+
 /// Columns of one rigid body; -1 where it has none.
 struct MotiveBody {
   std::string name;
@@ -40,6 +55,9 @@ class MotiveReader {
       : rest_(text), name_(name), hints_(hints) {}
 
   Imported read() {
+    if (rest_.starts_with("Format Version;"))
+      throw InputError(name_ + ":1", "", "semicolons between cells, as a spreadsheet saves them",
+                       "the file as Motive exported it: commas, and decimal points");
     read_first_line(next_fields());
     read_header();
     while (!rest_.empty()) {
@@ -65,21 +83,32 @@ class MotiveReader {
   void read_first_line(const std::vector<std::string>& fields) {
     std::map<std::string, std::string> said;
     for (std::size_t i = 0; i + 1 < fields.size(); i += 2) said[fields[i]] = fields[i + 1];
-    const std::map<std::string, double> units = {
-        {"Meters", 1.0}, {"Centimeters", 0.01}, {"Millimeters", 0.001}, {"Inches", 0.0254}, {"Feet", 0.3048}};
-    const auto unit = units.find(said["Length Units"]);
-    if (unit == units.end())
-      fail("Length Units", "'" + printable(said["Length Units"], 40) + "'",
-           "Meters, Centimeters, Millimeters, Inches or Feet");
-    unit_ = unit->second;
+    read_unit(said["Length Units"]);
     if (said["Coordinate Space"] == "Local")
       fail("Coordinate Space", "'Local'", "'Global', an option of the export: poses in motion capture's frame");
     rotation_ = said["Rotation Type"];
-    if (rotation_ == "Quaternion") return;
-    std::string axes = rotation_;
-    std::sort(axes.begin(), axes.end());
-    if (axes != "XYZ")
+    if (rotation_.empty() || rotation_ == "Quaternion") return;
+    if (!is_order_of_axes(rotation_))
       fail("Rotation Type", "'" + printable(rotation_, 40) + "'", "'Quaternion', or three axes such as 'XYZ'");
+    if (!hints_.rotation.empty() && hints_.rotation != rotation_)
+      fail("--rotation", "'" + printable(hints_.rotation, 40) + "'", "'" + rotation_ + "', as the header says");
+  }
+
+  /// What the header says, else what the hints do.
+  void read_unit(const std::string& said) {
+    const auto unit = std::find_if(kMotiveUnits.begin(), kMotiveUnits.end(), [&](const MotiveUnit& one) {
+      return said.empty() ? one.word == hints_.length_unit : one.name == said;
+    });
+    if (unit == kMotiveUnits.end() && said.empty() && hints_.length_unit.empty())
+      fail("Length Units", "nothing: the header has none", "one, by --length-unit m, cm, mm, in or ft");
+    if (unit == kMotiveUnits.end())
+      fail(said.empty() ? "--length-unit" : "Length Units",
+           "'" + printable(said.empty() ? hints_.length_unit : said, 40) + "'",
+           said.empty() ? "m, cm, mm, in or ft" : "Meters, Centimeters, Millimeters, Inches or Feet");
+    if (!hints_.length_unit.empty() && hints_.length_unit != unit->word)
+      fail("--length-unit", "'" + printable(hints_.length_unit, 40) + "'",
+           fmt::format("'{}', as the header says", unit->word));
+    unit_ = unit->metres;
   }
 
   /// The lines up to that of the columns: kinds of things first, their names second, what is measured last.
@@ -99,6 +128,9 @@ class MotiveReader {
           std::all_of(fields.begin(), fields.end(), [](const std::string& one) { return one.empty(); });
       if (fields.size() > 2 && !is_empty) lines.push_back(std::move(fields));
     }
+    if (width_ <= 2)
+      fail("", "times alone",
+           "a rigid body at least: Motive exports what is ticked in its dialog, of a take that was solved");
     if (lines.size() < 4) fail("", "no lines of types, names and kinds above the columns", "an export by Motive");
     for (std::vector<std::string>& line : lines) line.resize(width_);
     const auto& types = lines[0];
@@ -119,7 +151,9 @@ class MotiveReader {
     }
     if (time_ < 0) fail("", "no column Time (Seconds)", "the header of an export by Motive");
     if (bodies_.empty())
-      fail("", "no rigid body", "at least one: markers alone have no pose; define rigid bodies and export them");
+      fail("", "no rigid body" + list_others(),
+           "at least one: markers alone say no orientation; define rigid bodies in Motive and export them");
+    if (rotation_.empty()) rotation_ = guess_rotation();
     for (const MotiveBody& body : bodies_) {
       const std::size_t parts = rotation_ == "Quaternion" ? 4 : 3;
       for (std::size_t k = 0; k < parts; ++k)
@@ -127,6 +161,26 @@ class MotiveReader {
       for (const int column : body.position)
         if (column < 0) fail(printable(body.name, 60), "a position that lacks columns", "X, Y and Z");
     }
+  }
+
+  /// Of a header that does not say it: four numbers are a quaternion, three need an order.
+  [[nodiscard]] std::string guess_rotation() const {
+    if (std::any_of(bodies_.begin(), bodies_.end(), [](const MotiveBody& body) { return body.rotation[3] >= 0; }))
+      return "Quaternion";
+    if (!hints_.rotation.empty() && !is_order_of_axes(hints_.rotation))
+      fail("--rotation", "'" + printable(hints_.rotation, 40) + "'", "three axes such as 'XYZ'");
+    if (hints_.rotation.empty())
+      fail("Rotation Type", "nothing: the header has none, and rotations are angles",
+           "their order, by --rotation XYZ or another");
+    return hints_.rotation;
+  }
+
+  /// Kinds of what is no rigid body, with their columns.
+  [[nodiscard]] std::string list_others() const {
+    std::string text;
+    for (const auto& [type, columns] : others_)
+      if (!type.empty() && type != "Type") text += fmt::format(", but {} columns of kind '{}'", columns, type);
+    return printable(text, 60);
   }
 
   void enter(MotiveBody& body, const std::string& kind, const std::string& axis, int column) const {
@@ -194,8 +248,7 @@ class MotiveReader {
   }
 
   Imported finish() {
-    if (times_.size() < 2)
-      throw InputError(name_, "", std::to_string(times_.size()) + " rows", "two rows of numbers or more");
+    require_two_rows(times_.size(), name_);
     Imported imported;
     record::MotionCaptureLog& log = imported.recording.motion_capture;
     log.sample_frequency = rate_of(times_);
@@ -228,7 +281,16 @@ class MotiveReader {
 
 }  // namespace
 
-bool is_motive(std::string_view text) { return text.starts_with("Format Version,"); }
+bool is_motive(std::string_view text) {
+  return text.starts_with("Format Version,") || text.starts_with("\"Format Version\",") ||
+         text.starts_with("Format Version;");
+}
+
+bool is_early_motive(std::string_view text) {
+  if (!text.starts_with("comment,")) return false;
+  const std::string_view title = take_line(text);
+  return title.find("OptiTrack") != std::string_view::npos || title.find("NaturalPoint") != std::string_view::npos;
+}
 
 Imported read_motive(std::string_view text, const std::string& name, const Hints& hints) {
   return MotiveReader(text, name, hints).read();

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
-#include <set>
 
 #include "snug/archive_import/internal/readers.hpp"
 #include "snug/core/csv_fields.hpp"
@@ -18,10 +18,19 @@ namespace {
 constexpr std::string_view kTimeName = "timestamp";
 constexpr std::string_view kToolName = "actual_TCP_pose";
 
+/// Beyond any controller's, Hz.
+constexpr double kHighestRate = 1e5;
+
 std::optional<char> separator_of(std::string_view header) {
   for (const char separator : {',', ';', '\t', ' '})
     if (header.find(separator) != std::string_view::npos) return separator;
   return std::nullopt;
+}
+
+std::string_view unquote(std::string_view cell) {
+  cell = trim(cell);
+  const bool is_quoted = cell.size() > 1 && cell.starts_with('"') && cell.ends_with('"');
+  return is_quoted ? cell.substr(1, cell.size() - 2) : cell;
 }
 
 /// Cells without quotes around; neither a comma nor a blank stands in them.
@@ -31,9 +40,7 @@ std::vector<std::string_view> split_cells(std::string_view line, char separator,
     if (cells.size() == kMostCsvFields)
       throw InputError(where, "", "more than " + std::to_string(kMostCsvFields) + " cells", "fewer");
     const std::size_t end = std::min(line.find(separator), line.size());
-    std::string_view cell = trim(line.substr(0, end));
-    if (cell.size() > 1 && cell.starts_with('"') && cell.ends_with('"')) cell = cell.substr(1, cell.size() - 2);
-    cells.push_back(cell);
+    cells.push_back(unquote(line.substr(0, end)));
     if (end == line.size()) return cells;
     line.remove_prefix(end + 1);
   }
@@ -74,16 +81,18 @@ class RtdeReader {
     const std::optional<char> separator = separator_of(line);
     if (!separator) fail("", "one column", "timestamp and others, such as actual_q_0");
     separator_ = *separator;
-    std::set<std::string_view> seen;
+    std::map<std::string_view, std::size_t> seen;
     for (const std::string_view name : split_cells(line, separator_, where())) {
       if (name.empty() || !is_printable(name)) fail("", "a column without a printable name", "a name");
-      if (!seen.insert(name).second) fail(std::string(name), "the column twice", "each column once");
-      if (name == kTimeName) time_ = all_.size();
+      const auto [first, is_new] = seen.emplace(name, all_.size());
+      if (is_new && name == kTimeName) time_ = all_.size();
+      first_.push_back(first->second);
       all_.emplace_back(name);
     }
-    if (all_.size() > kMostColumns)
-      fail("", std::to_string(all_.size()) + " columns", std::to_string(kMostColumns) + " or fewer");
-    if (all_.size() < 2) fail("", "no column beside the time", "such as actual_q_0");
+    if (seen.size() > kMostColumns)
+      fail("", std::to_string(seen.size()) + " columns", std::to_string(kMostColumns) + " or fewer");
+    if (seen.size() < 2) fail("", "no column beside the time", "such as actual_q_0");
+    require_times();
     columns_.resize(all_.size());
     tool_ = find_six(all_, kToolName);
     if (!hints_.wrench.empty()) {
@@ -92,23 +101,51 @@ class RtdeReader {
     }
   }
 
+  /// A column of them, or a rate.
+  void require_times() const {
+    if (time_) return;
+    if (hints_.rate == 0.0)
+      fail(std::string(kTimeName), "no such column",
+           "it, which a recipe of RTDE can have; or --rate HZ where rows came at a fixed rate: 500 on an e-Series, 125 "
+           "before");
+    if (!(hints_.rate > 0.0 && hints_.rate <= kHighestRate))
+      fail("--rate", fmt::format("{}", hints_.rate), fmt::format("rows a second, up to {}", kHighestRate));
+  }
+
   void read_row(const std::vector<std::string_view>& cells) {
     if (cells.size() != all_.size())
       fail("", std::to_string(cells.size()) + " cells", std::to_string(all_.size()) + ", one for each column");
-    const double time = read_cell(cells[time_], where(), std::string(kTimeName));
+    row_.clear();
+    for (std::size_t i = 0; i < all_.size(); ++i) {
+      const std::string_view cell = cells[i];
+      row_.push_back(cell == "True" ? 1.0 : cell == "False" ? 0.0 : read_cell(cell, where(), all_[i]));
+      const double twin = row_[first_[i]];
+      if (row_[i] != twin && (std::isfinite(row_[i]) || std::isfinite(twin)))
+        fail(all_[i], fmt::format("the column twice, with {} and {}", twin, row_[i]),
+             "each once, or the same numbers in both");
+    }
+    const double time = time_ ? row_[*time_] : static_cast<double>(times_.size()) / hints_.rate;
     if (!times_.empty() && time == times_.back()) {  // a package that was written twice
       ++repeated_;
+      if (!is_last_row()) ++repeated_with_others_;
       return;
     }
     require_growth(times_, time, where());
     times_.push_back(time);
-    for (std::size_t i = 0; i < all_.size(); ++i) {
-      const std::string_view cell = cells[i];
-      const double value = cell == "True" ? 1.0 : cell == "False" ? 0.0 : read_cell(cell, where(), all_[i]);
-      columns_[i].push_back(value);
-    }
+    for (std::size_t i = 0; i < all_.size(); ++i)
+      if (first_[i] == i) columns_[i].push_back(row_[i]);
     if (tool_) read_tool();
     if (wrench_) read_wrench();
+  }
+
+  /// Has the row the numbers of the one that was taken last?
+  [[nodiscard]] bool is_last_row() const {
+    for (std::size_t i = 0; i < all_.size(); ++i) {
+      if (first_[i] != i) continue;
+      const double last = columns_[i].back();
+      if (row_[i] != last && (std::isfinite(row_[i]) || std::isfinite(last))) return false;
+    }
+    return true;
   }
 
   [[nodiscard]] Vector3 last_three(const std::array<std::size_t, 6>& at, std::size_t first) const {
@@ -137,20 +174,28 @@ class RtdeReader {
   }
 
   Imported finish() {
-    if (times_.size() < 2)
-      throw InputError(name_, "", std::to_string(times_.size()) + " rows", "two rows of numbers or more");
+    require_two_rows(times_.size(), name_);
     Imported imported;
     record::RobotLog& robot = imported.recording.robot;
     robot.times = std::move(times_);
     for (std::size_t i = 0; i < all_.size(); ++i) {
-      if (i == time_ || all_[i] == "Frame" || all_[i] == "Time(s)") continue;
+      if (i == time_ || first_[i] != i || all_[i] == "Frame" || all_[i] == "Time(s)") continue;
       robot.names.push_back(all_[i]);
       robot.columns.push_back(std::move(columns_[i]));
     }
     robot.tool = std::move(tool_poses_);
     if (tool_)
       imported.remarks.emplace_back("the tool is the TCP of the controller: check that this is E, the gripper's end");
-    if (repeated_ > 0) imported.remarks.push_back(fmt::format("{} rows with the time of the row before", repeated_));
+    if (repeated_ > 0)
+      imported.remarks.push_back(
+          fmt::format("rows with the time of the row before are left out: {}; with other numbers: {}", repeated_,
+                      repeated_with_others_));
+    if (const std::string twins = list_twins(); !twins.empty())
+      imported.remarks.push_back("columns that are there twice, with the same numbers, are taken once: " + twins);
+    if (!time_)
+      imported.remarks.push_back(fmt::format("no times: {} rows a second, as --rate says", hints_.rate));
+    else if (hints_.rate != 0.0)
+      imported.remarks.emplace_back("--rate does not count: there is a column timestamp");
     if (wrench_) imported.recording.force_torque = {std::move(wrench_times_), std::move(wrenches_), {}};
     if (!wrench_ && find_six(all_, "ft_raw_wrench"))
       imported.remarks.emplace_back("--wrench ft_raw_wrench takes that for the force sensor, as it is");
@@ -158,19 +203,28 @@ class RtdeReader {
     return imported;
   }
 
+  [[nodiscard]] std::string list_twins() const {
+    std::string names;
+    for (std::size_t i = 0; i < all_.size(); ++i)
+      if (first_[i] != i) names += (names.empty() ? "" : ", ") + all_[i];
+    return printable(names, 150);
+  }
+
   std::string_view rest_;
   std::string name_;
   const Hints& hints_;
   char separator_ = ' ';
   int line_ = 1;
-  std::size_t time_ = 0;
-  std::vector<std::string> all_;  ///< names of columns, with the time
-  std::vector<std::vector<double>> columns_;
+  std::optional<std::size_t> time_;
+  std::vector<std::string> all_;              ///< names of columns, with the time
+  std::vector<std::size_t> first_;            ///< of each column: the first one of its name
+  std::vector<std::vector<double>> columns_;  ///< empty where the name was there before
+  std::vector<double> row_;
   std::optional<std::array<std::size_t, 6>> tool_, wrench_;
   std::vector<double> times_, wrench_times_;
   std::vector<record::PoseSample> tool_poses_;
   std::vector<Wrench> wrenches_;
-  int repeated_ = 0;
+  int repeated_ = 0, repeated_with_others_ = 0;
 };
 
 }  // namespace
@@ -179,14 +233,16 @@ bool is_rtde(std::string_view text) {
   const std::string_view header = trim(take_line(text));
   const std::optional<char> separator = separator_of(header);
   if (!separator) return false;
+  bool has_outputs = false;
   for (std::size_t begin = 0; begin < header.size();) {
     const std::size_t end = std::min(header.find(*separator, begin), header.size());
-    std::string_view cell = trim(header.substr(begin, end - begin));
-    if (cell.size() > 1 && cell.starts_with('"') && cell.ends_with('"')) cell = cell.substr(1, cell.size() - 2);
+    const std::string_view cell = unquote(header.substr(begin, end - begin));
     if (cell == kTimeName) return true;
+    if (cell == "t") return false;  // mc_rtc's, and what an archive became
+    has_outputs = has_outputs || cell.starts_with("actual_") || cell.starts_with("target_");
     begin = end + 1;
   }
-  return false;
+  return has_outputs;
 }
 
 Imported read_rtde(std::string_view text, const std::string& name, const Hints& hints) {

@@ -62,6 +62,11 @@ std::string begin_at_zero(record::ArchiveRecording& recording) {
   return fmt::format("{:.0f} s", first);
 }
 
+void require_two_rows(std::size_t rows, const std::string& name) {
+  if (rows >= 2) return;
+  throw InputError(name, "", rows == 0 ? "no row of numbers" : "one row of numbers", "two or more: a recording");
+}
+
 double rate_of(const std::vector<double>& times) {
   return static_cast<double>(times.size() - 1) / (times.back() - times.front());
 }

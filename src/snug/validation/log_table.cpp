@@ -176,7 +176,8 @@ class LogReader {
     const double time = number(cells, time_);
     if (!std::isfinite(time)) fail("t", "nothing", "a time in s");
     if (!times_.empty() && !(time > times_.back()))
-      fail("t", std::to_string(time) + " s after " + std::to_string(times_.back()) + " s", "times that grow");
+      fail("t", std::to_string(time) + " s after " + std::to_string(times_.back()) + " s",
+           "times that grow: mc_bin_to_log writes six digits, mc_bin_to_flat all");
     times_.push_back(time);
     for (Body& body : bodies_) body.poses.push_back(read_pose(cells, body.columns));
     if (tool_[0] >= 0) tool_poses_.push_back(read_pose(cells, tool_));

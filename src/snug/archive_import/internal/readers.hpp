@@ -18,6 +18,8 @@ inline constexpr std::size_t kMostColumns = 500;
 inline constexpr double kUnitTolerance = 1e-2;
 
 [[nodiscard]] bool is_motive(std::string_view text);
+/// An export of Tracking Tools, or of Motive before 1.2: rows of several kinds, behind comments.
+[[nodiscard]] bool is_early_motive(std::string_view text);
 [[nodiscard]] Imported read_motive(std::string_view text, const std::string& name, const Hints& hints);
 
 [[nodiscard]] bool is_rtde(std::string_view text);
@@ -43,6 +45,8 @@ extern const char* const kBagProgram;
 /// Times begin within the first second: the whole seconds before the first are taken off, and returned as a text, if
 /// any.
 [[nodiscard]] std::string begin_at_zero(record::ArchiveRecording& recording);
+/// Refuses a recording of fewer than two rows.
+void require_two_rows(std::size_t rows, const std::string& name);
 /// The rate of times, at least two.
 [[nodiscard]] double rate_of(const std::vector<double>& times);
 /// Throws InputError for a time that does not come after the one before.

@@ -57,7 +57,11 @@ TEST(Measurements, WhatCannotBeReadIsNamed) {
          "\xff\xfe"
          "F",
          "UTF-16");
-  refuse("other.csv", "a,b\n1,2\n", "other.csv:1: t");
+  refuse("other.csv", "a,b\n1,2\n", "other.csv:1: t: got no such column: a table that begins with 'a', 'b'");
+  refuse("numbers.csv", "0.0,-1.5,2e-3\n0.1,1,2\n", "numbers, no names of columns");
+  refuse("early.csv", "comment,\"OptiTrack Export Data\"\ncomment,\"== \"\n", "before 1.2");
+  refuse("rounded.csv", "t;a_FloatingBase_orientation_w\n", "no such column");
+  refuse("untimed.csv", "actual_q_0,actual_q_1\n1,2\n", "--rate HZ");
   refuse("empty.csv", "", "empty");
   refuse("bytes.csv", "timestamp q\n\xe9", "bytes.csv:2");
   EXPECT_FALSE(is_import("archive.h5"));

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "mutants.hpp"
 #include "refusals.hpp"
 #include "snug/archive_import/internal/readers.hpp"
 
@@ -84,14 +85,63 @@ TEST(Motive, AnglesTurnInTheirOrderAboutTheTurnedAxes) {
   EXPECT_LT((read("YZX").p - Vector3(0.01, 0.02, 0.03)).norm(), 1e-12);
 }
 
+/// Of a spreadsheet, or of an early version: a header that ends before the units.
+std::string short_header(const std::string& columns) {
+  return "Format Version,1.22,Take Name,A take,,,,\n,,,,\n" + columns;
+}
+
+const std::string kAngleColumns =
+    ",,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Marker\n"
+    ",,Base,Base,Base,Base,Base,Base,Unlabeled 1004\n,,1,1,1,1,1,1,\n"
+    ",,Rotation,Rotation,Rotation,Position,Position,Position,Position\n"
+    "Frame,Time (Seconds),X,Y,Z,X,Y,Z,X\n0,0,30,40,50,1,2,3,\n1,0.1,30,40,50,1,2,3,7\n";
+
+TEST(Motive, WhatAShortHeaderDoesNotSayIsAskedFor) {
+  expect_refusal([] { return read_motive(short_header(kAngleColumns), "take.csv", {}); }, "--length-unit");
+  Hints hints;
+  hints.length_unit = "cm";
+  expect_refusal([&] { return read_motive(short_header(kAngleColumns), "take.csv", hints); }, "--rotation XYZ");
+  hints.rotation = "XYZ";
+  const Imported said = read_motive(short_header(kAngleColumns), "take.csv", hints);
+  const Imported written = read_motive(header("XYZ", "Centimeters", kAngleColumns), "take.csv", {});
+  EXPECT_EQ(said.recording.motion_capture, written.recording.motion_capture);
+  // Four numbers need no order.
+  const Imported four =
+      read_motive(short_header(kQuaternionColumns) + "0,0,0,0,0,1,1,2,3,,\n1,1,0,0,0,1,1,2,3,,\n", "take.csv", hints);
+  EXPECT_LT((four.recording.motion_capture.bodies.at(0).poses[0].p - Vector3(0.01, -0.03, 0.02)).norm(), 1e-12);
+}
+
+TEST(Motive, WhatTheHeaderSaysIsNotOverruled) {
+  const std::string text = header("XYZ", "Centimeters", kAngleColumns);
+  Hints hints;
+  hints.length_unit = "mm";
+  expect_refusal([&] { return read_motive(text, "take.csv", hints); }, "'cm', as the header says");
+  hints.length_unit = "cm";
+  hints.rotation = "ZYX";
+  expect_refusal([&] { return read_motive(text, "take.csv", hints); }, "'XYZ', as the header says");
+  hints.rotation = "XYZ";
+  EXPECT_EQ(read_motive(text, "take.csv", hints).recording, read_motive(text, "take.csv", {}).recording);
+}
+
+TEST(Motive, MutantsAreReadOrRefused) {
+  const std::vector<std::string> words = {"1e999", "-1", "", ",", "\n", "\"", "nan", "Rigid Body", "Frame", "\xff"};
+  Hints hints;
+  hints.length_unit = "cm";
+  hints.rotation = "XYZ";
+  const auto read = [&](const std::string& text) { (void)read_motive(text, "take.csv", hints); };
+  EXPECT_GT(test::expect_answers(short_header(kAngleColumns), words, 2500, read), 0);
+  const std::string quaternions = short_header(kQuaternionColumns) + "0,0,0,0,0,1,1,2,3,,\n1,1,,,,,,,,,\n2,2\n";
+  EXPECT_GT(test::expect_answers(quaternions, words, 2500, read), 0);
+}
+
 TEST(Motive, SlipsAreRefusedWithLineAndCause) {
   const std::string good = header("Quaternion", "Meters", kQuaternionColumns);
   const std::string row = "0,0.0,0,0,0,1,1,2,3,0.1,5\n";
   const struct {
     std::string text, part;
   } slips[] = {
-      {good, "0 rows"},
-      {good + row, "1 rows"},
+      {good, "no row"},
+      {good + row, "one row"},
       {good + row + row, "take.csv:9: time"},
       {good + row + "1,0.1,0,0,0,0.5,1,2,3,0.1,5\n", "length 0.5"},
       {good + row + "1,0.1,0,0,0,1,1,,3,0.1,5\n", "some of a pose"},
@@ -102,9 +152,12 @@ TEST(Motive, SlipsAreRefusedWithLineAndCause) {
       {header("Quaternion", "Furlongs", kQuaternionColumns) + row, "Meters, Centimeters"},
       {header("Sideways", "Meters", kQuaternionColumns) + row, "'XYZ'"},
       {"Format Version,1.0\n" + row, "Length Units"},
+      {short_header(",,Rigid Body\n,,A\n,,Rotation\nFrame,Time,X\n0,0,1\n"), "Length Units"},
       {header("Quaternion", "Meters", "") + row, "no line that begins with Frame"},
       {header("Quaternion", "Meters", ",Type,Marker\n,Name,M\n,,Position\nFrame,Time (Seconds),X\n0,0,1\n"),
-       "no rigid body"},
+       "no rigid body, but 1 columns of kind 'Marker'"},
+      {header("Quaternion", "Meters", ",Type\n,Name\n,ID\n,\nFrame,Time (Seconds)\n0,0\n"), "times alone"},
+      {"Format Version;1.23;Length Units;Meters\n", "semicolons"},
       {header("Quaternion", "Meters", ",Type,Rigid Body\n,Name,M\n,,Position\nFrame,Time (Seconds),X\n0,0,1\n"),
        "lacks columns"},
   };

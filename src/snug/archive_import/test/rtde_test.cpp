@@ -1,6 +1,9 @@
 // Tables of RTDE: separators, the tool, the force sensor, and slips.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "mutants.hpp"
 #include "refusals.hpp"
 #include "snug/archive_import/internal/readers.hpp"
 
@@ -50,12 +53,16 @@ TEST(Rtde, SlipsAreRefusedWithLineAndColumn) {
   const struct {
     std::string text, part;
   } slips[] = {
-      {kHead, "0 rows"},
+      {kHead, "no row"},
+      {"timestamp q\n1 2\n", "one row"},
       {"timestamp\n1\n2\n", "one column"},
       {"timestamp q\n1 2\n1.5 x\n", "robot.csv:3: q"},
       {"timestamp q\n1 2\n0.5 2\n", "times that grow"},
       {"timestamp q\n1 2\n1.5\n", "1 cells"},
-      {"timestamp q q\n1 2 3\n", "twice"},
+      {"timestamp q q\n1 2 2\n2 2 3\n", "robot.csv:3: q: got the column twice, with 2 and 3"},
+      {"timestamp q q\n1 2 nan\n", "twice, with 2 and nan"},
+      {"timestamp timestamp\n1 1\n", "no column beside the time"},
+      {"actual_q_0 q\n1 2\n", "--rate HZ"},
       {"timestamp q\n1 2\nnan 3\n", "a time in s"},
       {"timestamp q\n1 2\n1e999 3\n", "a number"},
   };
@@ -69,6 +76,51 @@ TEST(Rtde, SlipsAreRefusedWithLineAndColumn) {
   const Imported twice = read_rtde("timestamp q\n1 2\n1 2\n1.5 3\n", "robot.csv", {});
   EXPECT_EQ(twice.recording.robot.times.size(), 2U) << "a package written twice counts once";
   EXPECT_FALSE(twice.remarks.empty());
+}
+
+TEST(Rtde, ColumnsThatAreThereTwiceCountOnce) {
+  const Imported imported =
+      read_rtde("timestamp,target_current_0,actual_q_0,target_current_0\n1,2,3,2\n2,nan,4,\n", "robot.csv", {});
+  const record::RobotLog& robot = imported.recording.robot;
+  EXPECT_EQ(robot.names, (std::vector<std::string>{"target_current_0", "actual_q_0"}));
+  EXPECT_EQ(robot.columns[1], (std::vector<double>{3.0, 4.0}));
+  EXPECT_NE(imported.remarks.front().find("taken once: target_current_0"), std::string::npos);
+}
+
+TEST(Rtde, RowsWithoutTimesComeAtARateThatIsSaid) {
+  const std::string text = "actual_q_0 actual_q_1\n0.1 0.2\n0.3 0.4\n0.5 0.6\n";
+  ASSERT_TRUE(is_rtde(text));
+  EXPECT_FALSE(is_rtde("t;actual_q_0\n0;1\n")) << "a log of mc_rtc, or a table of an archive";
+  Hints hints;
+  hints.rate = 125.0;
+  const Imported imported = read_rtde(text, "robot.csv", hints);
+  EXPECT_EQ(imported.recording.robot.times, (std::vector<double>{0.0, 0.008, 0.016}));
+  EXPECT_EQ(imported.recording.robot.names.size(), 2U);
+  EXPECT_NE(imported.remarks.front().find("125 rows a second"), std::string::npos);
+  const Imported with_times = read_rtde("timestamp q\n1 2\n2 3\n", "robot.csv", hints);
+  EXPECT_EQ(with_times.recording.robot.times, (std::vector<double>{1.0, 2.0}));
+  EXPECT_NE(with_times.remarks.front().find("does not count"), std::string::npos);
+  for (const double bad : {-1.0, 1e9, std::nan("")}) {
+    hints.rate = bad;
+    expect_refusal([&] { return read_rtde(text, "robot.csv", hints); }, "--rate");
+  }
+}
+
+TEST(Rtde, RowsOfOneTimeAreCounted) {
+  const Imported imported = read_rtde("timestamp q\n1 2\n1 2\n1 5\n1.5 3\n", "robot.csv", {});
+  EXPECT_EQ(imported.recording.robot.columns[0], (std::vector<double>{2.0, 3.0}));
+  EXPECT_EQ(imported.remarks.front(), "rows with the time of the row before are left out: 2; with other numbers: 1");
+}
+
+TEST(Rtde, MutantsAreReadOrRefused) {
+  const std::vector<std::string> words = {"1e999", "-1", " ", ",", "\n", "\"", "nan", "timestamp", "t", "\xff", "True"};
+  const auto read = [](const std::string& text) {
+    Hints hints;
+    hints.rate = 500.0;
+    (void)read_rtde(text, "robot.csv", hints);
+  };
+  EXPECT_GT(test::expect_answers(kHead + kRows, words, 2500, read), 0);
+  EXPECT_GT(test::expect_answers("actual_q_0 q actual_q_0 v\n1 2 1 3\n2 3 2 4\n5 6 5 7\n", words, 2500, read), 0);
 }
 
 }  // namespace
