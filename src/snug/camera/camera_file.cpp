@@ -129,6 +129,9 @@ class CameraReader {
     const std::string key = node.IsScalar() ? node.Scalar() : std::string();
     const std::vector<std::string>& known = known_keys();
     if (ignored_keys().contains(key) || std::ranges::find(known, key) != known.end()) return;
+    if (key.ends_with("_intrinsics"))  // which of them it is, depends on what the depth was aligned to
+      refuse(node, printable(key, 60), "the optics of one of several cameras",
+             "fx, fy, ppx and ppy of the depth frame alone: of the colour camera where depth is aligned to it");
     const std::string_view nearest = find_nearest(key, known);
     refuse(node, printable(key, 60), "an unknown key",
            nearest.empty() ? "keys of a camera (docs/camera.md)" : "'" + std::string(nearest) + "'");

@@ -90,6 +90,7 @@ TEST(CameraFile, SlipsAreRefusedWithTheirLine) {
       {"K: [900, 0, 640, 0, 900, 360, 0, 0]", "9"},
       {"X_WC: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1]", "no pose"},
       {"fx: .nan\nfy: 1\ncx: 1\ncy: 1", "finite"},
+      {R"({"color_intrinsics": {"fx": 608.3}, "depth_intrinsics": {"fx": 383.3}})", "one of several cameras"},
       {"[1, 2]", "no mapping"},
       {"{", "c.yaml"},
   };
