@@ -109,6 +109,10 @@ SheetHeading read_heading(std::string_view text) {
                 : std::ranges::any_of(words, [&](const std::string& word) { return has_word(known.words, word); }))
       heading.column = &known;
   }
+  // The weight that a carton may hold is not what it weighs.
+  const bool is_most =
+      std::ranges::any_of(words, [](const std::string& word) { return has_word(" max maximum ", word); });
+  if (is_most && heading.column != nullptr && heading.column->name == "mass_kg") heading.column = nullptr;
   if (heading.column == nullptr) return heading;
   for (auto word = words.rbegin(); word != words.rend() && heading.unit == nullptr; ++word)
     heading.unit = find_unit(heading.column->quantity, *word);
@@ -232,7 +236,12 @@ void check_headings(const std::vector<SheetColumn>& columns, const std::string& 
   const bool has_size = count_of(kSize) > 0;
   for (const KnownColumn& one : kKnownColumns) {
     const auto count = count_of(one.name);
-    if (count > 1) throw InputError(name + ":1", std::string(one.name), "more than one column: " + known, "one");
+    if (count > 1) {
+      std::string several;
+      for (const SheetColumn& column : columns)
+        if (column.column == one.name) several += (several.empty() ? "" : ", ") + printable(column.heading, 40);
+      throw InputError(name + ":1", std::string(one.name), "more than one column: " + several, "one");
+    }
     const bool is_edge = one.quantity == Quantity::Length && one.name != kSize;
     const bool is_needed = (is_edge && !has_size) || one.name == "mass_kg";
     if (is_needed && count == 0)

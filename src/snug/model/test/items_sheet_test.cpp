@@ -44,6 +44,26 @@ TEST(ItemsSheet, ReadsSizesOfOneColumn) {
             "article,length_mm,width_mm,height_mm,mass_kg\nA,200,150,100,0.5\n");
 }
 
+TEST(ItemsSheet, TheWeightThatACartonMayHoldIsNotItsMass) {
+  EXPECT_EQ(orders_of("length mm,width mm,height mm,max_weight_kg,tare_weight_kg\n300,250,200,10,0.3\n"),
+            "length_mm,width_mm,height_mm,mass_kg\n300,250,200,0.3\n");
+  try {
+    (void)orders_of("length mm,width mm,height mm,max. weight kg\n300,250,200,10\n");
+    ADD_FAILURE() << "was read";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.key, "mass_kg");
+  }
+}
+
+TEST(ItemsSheet, ColumnsThatCompeteAreNamed) {
+  try {
+    (void)orders_of("name,inner_length_mm,outer_length_mm,width mm,height mm,weight kg\na,1,2,3,4,5\n");
+    ADD_FAILURE() << "was read";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.got, "more than one column: inner_length_mm, outer_length_mm");
+  }
+}
+
 TEST(ItemsSheet, AsksForUnitsThatItDoesNotSay) {
   const std::string text = "length,width,height,mass\n20,15,10,500\n";
   const ItemsSheet sheet = read_items_sheet(text, "sheet.csv", {});
