@@ -47,13 +47,13 @@ void refuse_utf16(std::string_view text, const std::string& name) {
 
 /// A table that begins like none of those that are read: what its first line has, and how theirs begin.
 [[noreturn]] void refuse_unknown(std::string_view header, const std::string& name) {
-  constexpr std::size_t kMostWords = 4;
+  constexpr std::size_t kMostWords = 4, kLongestWord = 100;
   std::string words;
   bool has_names = false;
   std::size_t count = 0;
   while (!header.empty() && count < kMostWords) {
     const std::size_t end = std::min(header.find_first_of(",;\t"), header.size());
-    const std::string word(trim(header.substr(0, end)));
+    const std::string word(trim(header.substr(0, std::min(end, kLongestWord))));
     header.remove_prefix(std::min(end + 1, header.size()));
     if (word.empty()) continue;
     has_names = has_names || word.find_first_not_of("0123456789+-.eE") != std::string::npos;
