@@ -163,11 +163,16 @@ class Bags(unittest.TestCase):
         renamed = self.folder / "renamed"
         shutil.copytree(self.folder / "mcap", renamed)
         (renamed / "mcap.mcap").rename(renamed / "take.mcap")
+        tables, said = self.tables(renamed)
+        self.assertIn("read from take.mcap: the folder has no metadata.yaml that names it", said)
+        self.assertIn("crate_FloatingBase_position_x", tables["mocap"])
+        shutil.copy(renamed / "take.mcap", renamed / "another.mcap")
         said = self.snug("archive", "convert", renamed, "-o", "none.h5", code=2).stderr
-        self.assertIn("metadata.yaml names files that are not in the folder; give a bag itself: take.mcap", said)
-        (renamed / "metadata.yaml").unlink()
-        said = self.snug("archive", "convert", renamed, "-o", "none.h5", code=2).stderr
-        self.assertIn("no metadata.yaml; give a bag itself: take.mcap", said)
+        self.assertIn("metadata.yaml names none of the files of the folder; give a bag itself: another.mcap, take.mcap", said)
+        empty = self.folder / "empty"
+        empty.mkdir()
+        said = self.snug("archive", "convert", empty, "-o", "none.h5", code=2).stderr
+        self.assertIn("there is no bag in the folder", said)
         # A file beside the metadata of another bag is opened alone.
         other = self.folder / "other"
         shutil.copytree(self.folder / "mcap", other)

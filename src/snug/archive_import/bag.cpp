@@ -127,6 +127,7 @@ class BagReader {
       left_[text_of(row[2])].insert(topic);
       return;
     }
+    if (word == "said") return imported_.remarks.push_back(topic);
     if (!row[2].is_number_integer()) fail("no time", "a time in ns");
     const double time = 1e-9 * static_cast<double>(row[2].get<std::int64_t>());
     if (word == "joints" && row.size() == 7) return read_joints(topic, time, row);

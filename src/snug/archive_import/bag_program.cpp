@@ -5,7 +5,6 @@ namespace snug::archive_import::internal {
 
 const char* const kBagProgram =
     R"PY("""Writes the messages of a bag that snug takes, one a line (JSON). Arguments: the bag, the file to write."""
-import contextlib
 import json
 import math
 import sys
@@ -124,21 +123,28 @@ def of_mcap(path):
             yield from rows_of(channel.topic, schema.name, decoders[channel.id](message.data), message.log_time)
 
 
+said = []
+
+
 def bag_of(path):
-    """What is opened: of a file whose folder describes it the folder, which has the types of its messages."""
+    """What is opened: of a folder whose only bag was renamed, or has no metadata.yaml, the bag itself; of a file whose folder describes it the
+    folder, which has the types of its messages."""
     if path.is_dir():
-        if not (path / "metadata.yaml").exists():
-            leave(2, "the folder has no metadata.yaml; " + files_of(path))
-        return path
-    beside = path.parent / "metadata.yaml"
-    if path.suffix == ".db3" and beside.exists() and path.name in beside.read_text(encoding="utf-8", errors="replace"):
-        return path.parent
-    return path
+        names = sorted(one.name for one in path.iterdir() if one.suffix in (".mcap", ".db3", ".bag"))
+        if not names and not (path / "metadata.yaml").exists():
+            leave(2, "there is no bag in the folder")
+        if not names or any(describes(path, name) for name in names):
+            return path
+        if len(names) > 1:
+            leave(2, "metadata.yaml names none of the files of the folder; give a bag itself: " + ", ".join(names[:3]))
+        said.append("read from " + names[0] + ": the folder has no metadata.yaml that names it")
+        return path / names[0]
+    return path.parent if path.suffix == ".db3" and describes(path.parent, path.name) else path
 
 
-def files_of(folder):
-    names = sorted(one.name for one in folder.iterdir() if one.suffix in (".mcap", ".db3", ".bag"))
-    return "give a bag itself: " + ", ".join(names[:3]) if names else "there is no bag in it"
+def describes(folder, name):
+    metadata = folder / "metadata.yaml"
+    return metadata.exists() and name in metadata.read_text(encoding="utf-8", errors="replace")
 
 
 def of_bag(path):
@@ -147,15 +153,7 @@ def of_bag(path):
         from rosbags.typesys import Stores, get_typestore
     except ImportError:
         leave(3, "rosbags")
-    bag = bag_of(path)
-    try:
-        opened = AnyReader([bag], default_typestore=get_typestore(Stores.ROS2_HUMBLE))
-        opened.open()
-    except Exception as error:
-        if bag.is_dir() and "missing" in str(error):
-            leave(2, "metadata.yaml names files that are not in the folder; " + files_of(bag))
-        raise
-    with contextlib.closing(opened) as reader:
+    with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
         wanted = [c for c in reader.connections if is_wanted(c.msgtype)]
         for connection in reader.connections:
             if connection not in wanted:
@@ -170,11 +168,13 @@ left = {}
 
 
 def main():
-    path = Path(sys.argv[1])
     try:
+        path = bag_of(Path(sys.argv[1]))
         with open(sys.argv[2], "w", encoding="utf-8", errors="replace") as out:
             for row in (of_mcap(path) if path.suffix.lower() == ".mcap" else of_bag(path)):
                 out.write(json.dumps(row, ensure_ascii=True) + "\n")
+            for text in said:
+                out.write(json.dumps(["said", text, ""]) + "\n")
             for topic, kind in sorted(left):
                 out.write(json.dumps(["left", topic, kind.replace("/msg/", "/")]) + "\n")
     except Exception as error:  # what readers raise for files that are broken is of many kinds

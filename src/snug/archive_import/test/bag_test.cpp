@@ -131,6 +131,13 @@ TEST(Bag, WhatIsLeftOutIsSaidByKind) {
   EXPECT_EQ(remarks.back(), "left out: rosgraph_msgs/Log, 9 of sensor_msgs/Image");
 }
 
+TEST(Bag, WhatTheProgramSaysIsSaid) {
+  const std::string text =
+      turntable() + R"(["said","read from take.mcap: the folder has no metadata.yaml that names it",""])" + "\n";
+  EXPECT_EQ(read_bag_lines(text, "bag", {}).remarks.front(),
+            "read from take.mcap: the folder has no metadata.yaml that names it");
+}
+
 TEST(Bag, FramesOfPosesAreSaid) {
   const std::string one = R"(["pose","/a/pose",1000000000,"map",[0,0,0,0,0,0,1]]
 ["pose","/a/pose",2000000000,"map",[0,0,0,0,0,0,1]]
