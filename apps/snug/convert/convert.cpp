@@ -33,8 +33,8 @@ int run_convert(const ConvertOptions& options) {
 
 constexpr const char* kConvertHelp =
     R"(Reads MJCF (MuJoCo) and SDF (Gazebo): boxes, balls, capsules, cylinders, ellipsoids, planes and meshes as convex hulls, with mass, centre and
-inertia, friction, restitution, gravity and time step. Free bodies move, all others are fixed; joints keep their positions. convert reports on stderr, with line
-numbers, what it leaves out or changes (docs/scenes.md). It does not download models.
+inertia, friction, restitution, gravity and time step. Free bodies move, all others are fixed; joints keep their positions.
+convert reports on stderr, with line numbers, what it leaves out or changes (docs/scenes.md). It does not download models.
 Exit code 1: the scenario is written, but `snug simulate` refuses it for the printed reason, such as bodies that overlap at the start.
 Examples:
   snug convert scenarios/examples/scene.xml -o scene.yaml
