@@ -106,7 +106,7 @@ class Frames(unittest.TestCase):
 
     def test_words_that_cannot_be_are_refused_before_anything_moves(self):
         for words, part in ((("--perception", "frames"), "--frames"),
-                            (("--perception", "frames", "--frames", "true"), "a cell of its own"),
+                            (("--perception", "frames", "--frames", "true"), "a cell that a camera can see"),
                             (("--frames", "true"), "--perception frames"),
                             (("--plant", "click://127.0.0.1:9", "--perception", "frames", "--frames", "no-such-program x"),
                              "no program 'no-such-program'"),
