@@ -11,11 +11,16 @@ import shlex
 import shutil
 import socket
 import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tools"))
+sys.dont_write_bytecode = True
+import build_site  # noqa: E402
 SNUG = os.environ.get("SNUG", str(ROOT / "build" / "snug"))
 LONG = 1.0  # s: ten times what reading the largest shipped scenario takes
 SNUG_LONG = bool(os.environ.get("SNUG_LONG"))
@@ -210,6 +215,29 @@ class Help(unittest.TestCase):
             text = help_of(words)
             if "FILE" in text or "SCENARIO" in text or "DIR" in text:
                 self.assertIn("snug " + words[0], text, " ".join(words))
+
+
+class Site(unittest.TestCase):
+    """The pages that tools/build_site.py makes itself."""
+
+    def test_every_verb_stands_with_its_options(self):
+        with mock.patch.object(build_site, "SNUG", SNUG):
+            page = build_site.options_page()
+        for words in verbs():
+            self.assertIn(f"# snug {' '.join(words)}\n\n```text\n", page)
+        self.assertIn("--plant-seed N=1", page)
+
+    def test_the_gallery_links_the_pages_of_the_demo_that_there_are(self):
+        with tempfile.TemporaryDirectory() as name, mock.patch.object(build_site, "DEMO", Path(name)):
+            self.assertIn("make demo", build_site.gallery_page())
+            (Path(name) / "sequence-3.html").write_text("page", encoding="utf-8")
+            self.assertEqual(re.findall(r"gallery/sequence-\d.html", build_site.gallery_page()), ["gallery/sequence-3.html"])
+            build_site.copy_gallery(Path(name) / "site")
+            self.assertTrue((Path(name) / "site" / "gallery" / "sequence-3.html").exists())
+
+    def test_the_index_lists_what_is_made(self):
+        index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8").splitlines()
+        self.assertTrue({"options", "gallery"} <= set(index))
 
 
 class Init(unittest.TestCase):
