@@ -27,8 +27,7 @@ struct ArchiveConvertOptions {
   std::vector<std::string> inputs;
   std::string output;  ///< a folder for an archive's tables, a .h5 for measurements
   std::string name;    ///< of the recording that measurements become; the first file's unless given
-  std::string note, sequence;
-  std::string up = "y";
+  std::string note, sequence, up = "y";
   std::vector<std::string> renames;  ///< OLD=NEW
   std::optional<double> rate;        ///< Hz
   archive_import::Hints hints;
@@ -123,19 +122,17 @@ void add_archive_convert(const Verb& verb) {
       .expected(1, 8);
   part.option("-o,--output", options.output, "FOLDER|FILE.h5", "folder for the tables (made if needed), or the archive")
       .required();
-  part.option("--name", options.name, "NAME",
-              "name of the recording made from measurements (default: the name of the file)");
+  part.option("--name", options.name, "NAME", "name of the recording (default: that of the file of measurements)");
   part.option("--note", options.note, "TEXT", "remark on that recording");
   part.option("--sequence", options.sequence, "NAME", "item sequence of that recording");
   part.option("--rename", options.renames, "OLD=NEW", "rename a body of the file for the archive: Box013, Base005")
       .one_each();
   part.option("--up", options.up, "AXIS", "vertical axis in files of Motive: y, its usual one, is turned to z; or z",
               one_of({"y", "z"}));
-  part.option("--length-unit", options.hints.length_unit, "UNIT",
-              "unit of a file of Motive whose header names none: m, cm, mm, in or ft",
+  part.option("--length-unit", options.hints.length_unit, "UNIT", "unit of a file of Motive whose header names none",
               one_of({"m", "cm", "mm", "in", "ft"}));
   part.option("--rotation", options.hints.rotation, "ORDER",
-              "order of the angles of a file of Motive whose header names none, such as XYZ",
+              "order of the angles of a file of Motive whose header names none",
               one_of({"XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"}));
   part.option("--rate", options.rate, "HZ", "rows a second of RTDE without a column timestamp", positive());
   part.option("--tool", options.hints.tool, "TOPIC|FRAME", "in a bag: topic or frame with the poses of the tool");
