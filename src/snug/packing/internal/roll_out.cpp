@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <span>
 #include <tuple>
+#include <utility>
 
 #include "snug/core/parallel.hpp"
 
@@ -15,6 +18,22 @@ namespace {
 constexpr double kSteps = 1e12;     ///< of a m^3: volumes that differ by less are equal; the rounding of sums is less
 constexpr int kChoiceFutures = 12;  ///< that policies meet before one is chosen, at most
 constexpr double kChoiceEffort = 0.15;  ///< fraction of the effort that choosing may take
+
+/// The rest of a roll-out that has placed `volume` m^3.
+double go_on(Layout layout, double volume, const Policy& policy, const Prospect& prospect, std::span<const int> future,
+             int skips, RollOutWork& work) {
+  CandidatePose pose;
+  for (const int kind : future) {
+    const Piece& piece = prospect.kinds[static_cast<std::size_t>(kind)];
+    if (!choose(layout, policy, piece, work, pose)) {
+      if (--skips < 0) break;
+      continue;
+    }
+    layout.add(Layout::block_at(piece, pose));
+    volume += piece.volume;
+  }
+  return volume;
+}
 
 /// Draws an index by weight; -1 when no weight is left.
 int draw(const std::vector<double>& weights, Rng& rng) {
@@ -46,16 +65,23 @@ struct Heat {
   int threads;
   int skips;
   std::vector<RollOutWork> work;
+  struct Tree {
+    int entrant = -1;
+    std::optional<RollOutTree> of;
+  };
+  std::vector<Tree> trees;  ///< of each thread: of the entrant that it had last
 
   void run(std::vector<Standing>& field, const std::vector<Future>& futures) {
     const int per = static_cast<int>(futures.size());
     const int count = static_cast<int>(field.size()) * per;
     std::vector<double> volume(static_cast<std::size_t>(count), 0.0);
     parallel_for(count, threads, [&](int job, int thread) {
-      const Standing& standing = field[static_cast<std::size_t>(job / per)];
+      const int entrant = field[static_cast<std::size_t>(job / per)].entrant;
+      Tree& tree = trees[static_cast<std::size_t>(thread)];
+      if (tree.entrant != entrant) tree = {entrant, RollOutTree(entrants[static_cast<std::size_t>(entrant)])};
       volume[static_cast<std::size_t>(job)] =
-          roll_out(entrants[static_cast<std::size_t>(standing.entrant)], policy, prospect,
-                   futures[static_cast<std::size_t>(job % per)], skips, work[static_cast<std::size_t>(thread)]);
+          tree.of->roll_out(policy, prospect, futures[static_cast<std::size_t>(job % per)], skips,
+                            work[static_cast<std::size_t>(thread)]);
     });
     const auto first = std::ranges::find(field, 0, &Standing::entrant) - field.begin();
     for (std::size_t i = 0; i < field.size(); ++i) {
@@ -111,16 +137,44 @@ bool choose(const Layout& layout, const Policy& policy, const Piece& piece, Roll
 
 double roll_out(Layout layout, const Policy& policy, const Prospect& prospect, const Future& future, int skips,
                 RollOutWork& work) {
-  double volume = 0.0;
+  return go_on(std::move(layout), 0.0, policy, prospect, future, skips, work);
+}
+
+RollOutTree::RollOutTree(Layout start, std::size_t most_steps) : most_steps_(most_steps) {
+  steps_.push_back({std::move(start), true, 0, {}});
+}
+
+std::size_t RollOutTree::add(std::size_t before, int kind, const Policy& policy, const Piece& piece,
+                             RollOutWork& work) {
+  const std::int64_t looked_at = work.looked_at;
+  Step step{steps_[before].layout, false, 0, {}};
   CandidatePose pose;
-  for (const int kind : future) {
-    const Piece& piece = prospect.kinds[static_cast<std::size_t>(kind)];
-    if (!choose(layout, policy, piece, work, pose)) {
-      if (--skips < 0) break;
-      continue;
+  step.is_placed = choose(step.layout, policy, piece, work, pose);
+  step.looked_at = work.looked_at - looked_at;
+  if (step.is_placed) step.layout.add(Layout::block_at(piece, pose));
+  steps_[before].next.emplace_back(kind, steps_.size());
+  steps_.push_back(std::move(step));
+  return steps_.size() - 1;
+}
+
+double RollOutTree::roll_out(const Policy& policy, const Prospect& prospect, const Future& future, int skips,
+                             RollOutWork& work) {
+  double volume = 0.0;
+  std::size_t at = 0;
+  bool may_add = steps_.size() < most_steps_;
+  for (std::size_t i = 0; i < future.size(); ++i) {
+    const Piece& piece = prospect.kinds[static_cast<std::size_t>(future[i])];
+    const auto known = std::ranges::find(steps_[at].next, future[i], &std::pair<int, std::size_t>::first);
+    if (known != steps_[at].next.end()) {
+      at = known->second;
+      work.looked_at += steps_[at].looked_at;
+    } else if (std::exchange(may_add, false)) {
+      at = add(at, future[i], policy, piece, work);
+    } else {
+      return go_on(steps_[at].layout, volume, policy, prospect, std::span(future).subspan(i), skips, work);
     }
-    layout.add(Layout::block_at(piece, pose));
-    volume += piece.volume;
+    if (steps_[at].is_placed) volume += piece.volume;
+    if (!steps_[at].is_placed && --skips < 0) break;
   }
   return volume;
 }
@@ -146,8 +200,13 @@ std::vector<Standing> race(const std::vector<Layout>& entrants, const Policy& po
   std::vector<Standing> field(entrants.size());
   for (std::size_t i = 0; i < field.size(); ++i) field[i].entrant = static_cast<int>(i);
   const int threads = std::max(1, settings.threads);
-  Heat heat{entrants, policy,         prospect,
-            threads,  settings.skips, std::vector<RollOutWork>(static_cast<std::size_t>(threads))};
+  Heat heat{entrants,
+            policy,
+            prospect,
+            threads,
+            settings.skips,
+            std::vector<RollOutWork>(static_cast<std::size_t>(threads)),
+            std::vector<Heat::Tree>(static_cast<std::size_t>(threads))};
   Rng rng = Rng(settings.seed).split("futures");
   std::size_t left = field.size();
   int rounds = 1;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "snug/core/rng.hpp"
@@ -36,6 +37,35 @@ struct RollOutWork {
 /// Volume in m^3 that gets in before more items than `skips` did not fit.
 [[nodiscard]] double roll_out(Layout layout, const Policy& policy, const Prospect& prospect, const Future& future,
                               int skips, RollOutWork& work);
+
+/// Roll-outs of many futures from one layout: steps with which futures begin alike are taken once, and their places
+/// counted each time. Each roll-out keeps one more step, so that steps are kept where futures come by again.
+class RollOutTree {
+ public:
+  /// Steps that are kept, 4 kB each. On demonstrator orders (five random ones, packing_bench, 2026-11) decisions take
+  /// 0.74 of the time of roll-outs that share nothing, 0.75 with 5000, and 0.80 where every step of 3000 is kept.
+  static constexpr std::size_t kMostSteps = 1000;
+
+  explicit RollOutTree(Layout start, std::size_t most_steps = kMostSteps);
+
+  /// As roll_out() from the start, to the last bit; `work` counts all of its places. Policy, prospect and skips are
+  /// those of the first.
+  [[nodiscard]] double roll_out(const Policy& policy, const Prospect& prospect, const Future& future, int skips,
+                                RollOutWork& work);
+
+ private:
+  struct Step {
+    Layout layout;  ///< after it
+    bool is_placed = false;
+    std::int64_t looked_at = 0;                     ///< places, to choose it
+    std::vector<std::pair<int, std::size_t>> next;  ///< kind that came then, and the index of its step
+  };
+  /// What comes of a kind after a step; its index.
+  std::size_t add(std::size_t before, int kind, const Policy& policy, const Piece& piece, RollOutWork& work);
+
+  std::vector<Step> steps_;  ///< the first is the start
+  std::size_t most_steps_;
+};
 
 struct RaceSettings {
   std::uint64_t seed = 1;

@@ -107,6 +107,28 @@ TEST(RollOut, GoesOnAfterPiecesWithoutAPlaceAsOftenAsMayBeSkipped) {
   EXPECT_DOUBLE_EQ(filled(2), 4.0 * small);
 }
 
+TEST(RollOutTree, ComesToWhatEachRollOutComesToByItself) {
+  Rng rng = Rng(5).split("tree");
+  Prospect prospect;
+  for (int i = 0; i < 5; ++i) prospect.kinds.push_back(tiny_piece(rng));
+  prospect.weights.assign(5, 1.0);
+  Layout start(tiny_rules());
+  start.add({0, 0, 0, 2 * kCell, kCell, kCell});
+  for (const std::size_t most_steps : {std::size_t{1}, std::size_t{9}, RollOutTree::kMostSteps}) {
+    for (const int skips : {0, 2}) {
+      RollOutTree tree(start, most_steps);
+      RollOutWork shared, own;
+      for (int i = 0; i < 200; ++i) {
+        SCOPED_TRACE(i);
+        const Future future = draw_future(prospect, 45.0, rng);
+        EXPECT_EQ(tree.roll_out(plain_policy(), prospect, future, skips, shared),
+                  roll_out(start, plain_policy(), prospect, future, skips, own));
+        EXPECT_EQ(shared.looked_at, own.looked_at);
+      }
+    }
+  }
+}
+
 TEST(Race, KeepsTheFirstOfEqualsUnlessItCostsMore) {
   Rng rng = Rng(3).split("equals");
   Prospect prospect;
