@@ -29,14 +29,10 @@ NamedFiles files_of(const std::string& file, const ScenarioChanges& changes, con
   return files;
 }
 
-SourcedScenario load_with_sources(const std::string& file, const ScenarioChanges& changes) {
-  SourcedScenario loaded = model::load_changed(find_scenario(file), changes, find_shipped);
-  print_warnings(loaded.scenario.warnings);
-  return loaded;
-}
-
 model::Scenario load_changed(const std::string& file, const ScenarioChanges& changes) {
-  return load_with_sources(file, changes).scenario;
+  model::Scenario scenario = model::load_changed(find_scenario(file), changes, find_shipped);
+  print_warnings(scenario.warnings);
+  return scenario;
 }
 
 }  // namespace snug::app

@@ -12,7 +12,6 @@
 namespace snug::app {
 
 using model::ScenarioChanges;
-using model::SourcedScenario;
 
 /// --items, --container, --pallet and --set.
 void add_scenario_changes(const Verb& verb, ScenarioChanges& changes);
@@ -23,8 +22,5 @@ using OptionWords = std::vector<std::pair<std::string, std::string>>;
                                   const model::Scenario& scenario);
 /// The scenario that a word names, changed so; its warnings are printed. Throws InputError for what cannot be used.
 [[nodiscard]] model::Scenario load_changed(const std::string& file, const ScenarioChanges& changes);
-
-/// The same, and which of its parcels came from which file.
-[[nodiscard]] SourcedScenario load_with_sources(const std::string& file, const ScenarioChanges& changes);
 
 }  // namespace snug::app

@@ -11,15 +11,12 @@
 
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
-#include "apps/snug/command_line/shipped.hpp"
 #include "apps/snug/command_line/version.hpp"
 #include "apps/snug/command_line/viewer_page.hpp"
 #include "apps/snug/common/recordings.hpp"
 #include "snug/commands/stop_signal.hpp"
 #include "snug/core/input_error.hpp"
-#include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
-#include "snug/packing/python_agent.hpp"
 #include "snug/runs/result_json.hpp"
 #include "snug/study/comparison_design.hpp"
 #include "snug/study/run.hpp"
@@ -47,24 +44,15 @@ OptionWords common_words(const PackOptions& pack, std::uint64_t seed) {
   words.emplace_back("--seed", std::to_string(seed));
   for (const std::string& change : pack.plant_set) words.emplace_back("--plant-set", change);
   add("--perception", pack.plant.perception, usual.plant.perception);
-  add("--samples", pack.samples, usual.samples);
-  if (pack.skips) words.emplace_back("--skips", std::to_string(*pack.skips));
-  add("--decision-time", pack.decision_time, usual.decision_time);
+  add("--samples", pack.session.samples, usual.session.samples);
+  if (pack.session.skips) words.emplace_back("--skips", std::to_string(*pack.session.skips));
+  add("--decision-time", pack.session.decision.time, usual.session.decision.time);
   add("--future", pack.future, usual.future);
   add("--fault", pack.fault, usual.fault);
   add("--controller", pack.controller, usual.controller);
   if (pack.tempo) words.emplace_back("--tempo", fmt::format("{}", *pack.tempo));
   if (pack.robot) words.emplace_back("--robot", *pack.robot);
   return words;
-}
-
-/// What no session could use is said before the first one.
-void check_words(const PackOptions& pack, const std::vector<std::string>& agents) {
-  (void)make_plant_options(pack, {});
-  refuse_tempo_without_fast(pack.tempo, pack.controller);
-  for (const std::string& agent : agents) {
-    if (packing::is_python_agent(agent)) (void)packing::start_python_agent(agent, agent_script());
-  }
 }
 
 /// Prints rows as they come, and how many are done on a terminal.
@@ -112,15 +100,11 @@ int say_end(const std::vector<study::SessionRow>& rows, std::size_t sessions, st
 }
 
 /// In a process of its own: one session, its recording, its row as JSON. The exit code of `snug pack`.
-int run_session(const CompareOptions& options, const SourcedScenario& loaded, const study::SessionPoint& point,
-                int threads) {
-  PackOptions pack = options.pack;
-  pack.agent = point.agent;
-  pack.sequence = point.sequence;
-  pack.plant.seed = point.plant_seed;
-  pack.threads = threads;
-  const session::SessionOptions session = make_session_options(pack, loaded);
-  const simulated_plant::SimulatedPlantOptions plant = make_plant_options(pack, session);
+int run_session(const model::Scenario& scenario, const study::SessionPoint& point, session::SessionOptions session,
+                simulated_plant::SimulatedPlantOptions plant) {
+  session.agent = point.agent;
+  session.ask = choose_ask(point.agent, PackOptions{}.agent_patience);
+  plant.seed = point.plant_seed;
   std::optional<OutputFile> recording;
   study::TrialFiles files;
   if (!point.recording.empty()) {
@@ -128,7 +112,7 @@ int run_session(const CompareOptions& options, const SourcedScenario& loaded, co
     files.recording = study::recording_of(plant, session.agent, version_text(), *recording);
     files.describe = [](const runs::RunResult& one) { return runs::format_result(one); };
   }
-  const study::Trial trial = study::run_trial(loaded.scenario, point.sequence, session, plant, {}, files);
+  const study::Trial trial = study::run_trial(scenario, point.sequence, session, plant, {}, files);
   print(study::format_row(study::make_row(trial, point)));
   if (!trial.session.failure.text.empty())
     std::fprintf(stderr, "snug: failed: %s\n", trial.session.failure.text.c_str());
@@ -150,16 +134,18 @@ std::optional<study::Folder> open_folder(const CompareOptions& options, const st
 }
 
 int run_compare(const CompareOptions& options) {
-  SourcedScenario loaded = load_with_sources(options.pack.scenario, options.pack.changes);
-  model::Scenario& scenario = loaded.scenario;
+  model::Scenario scenario = load_changed(options.pack.scenario, options.pack.changes);
   study::ComparisonChoice choice = options.choice;
   choice.plant_seed = options.pack.plant.seed;
   const study::ComparisonDesign design = study::design_comparison(choice, scenario);
   const std::vector<study::SessionPoint>& points = design.points;
-  const std::uint64_t seed = options.pack.seed.value_or(scenario.seed);
+  session::SessionOptions session = make_session_options(options.pack, scenario);
+  const simulated_plant::SimulatedPlantOptions plant = make_plant_options(options.pack, session);
+  for (const std::string& agent : design.agents)
+    (void)choose_ask(agent, PackOptions{}.agent_patience);  // it can be had
+  const std::uint64_t seed = session.decision.seed;
   const study::Study study =
       study::make_comparison_study(choice, options.pack.scenario, common_words(options.pack, seed), points);
-  check_words(options.pack, design.agents);
   NamedFiles inputs = files_of(options.pack.scenario, options.pack.changes, scenario);
   expect_distinct(inputs, options.page ? NamedFiles{{"-o", *options.page}} : NamedFiles{});  // before a folder is made
   const std::optional<study::Folder> folder = open_folder(options, study, inputs);
@@ -175,8 +161,8 @@ int run_compare(const CompareOptions& options) {
   Printer printer(form, points.size());
   study::RunSettings settings;
   settings.version = version_text();
-  const int threads = options.pack.threads.value_or(core_count());
-  settings.processes = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(threads), points.size()));
+  settings.processes = static_cast<int>(std::min(static_cast<std::size_t>(session.threads), points.size()));
+  session.threads = session.decision.threads = session.threads / settings.processes;
   settings.is_stopped = is_interrupted;
   settings.tell = [&](const study::RowResult& result, const std::string& said) {
     if (result.exit_code == kBadInput)
@@ -186,13 +172,11 @@ int run_compare(const CompareOptions& options) {
     printer.add(row, said);
     sessions.back().report = make_report(row);
   };
-  const study::RowWork work = [&, each = threads / settings.processes](std::uint64_t row) {
-    return run_session(options, loaded, points[row], each);
-  };
+  const study::RowWork work = [&](std::uint64_t row) { return run_session(scenario, points[row], session, plant); };
   const study::RunSummary summary = study::run_rows(study, folder ? &*folder : nullptr, work, settings);
 
   std::vector<study::SessionRow> rows;
-  for (const study::ComparedSession& session : sessions) rows.push_back(session.row);
+  for (const study::ComparedSession& one : sessions) rows.push_back(one.row);
   if (page) write_file(std::move(*page), study::format_compare_page(scenario, sessions, *options.page));
   const bool is_own_container = !options.pack.changes.container && !options.pack.changes.pallet;
   print_now(study::format_compare_end(form, scenario, rows, is_own_container));

@@ -126,25 +126,22 @@ study::Trial run_elsewhere(const PackOptions& options, const model::Scenario& sc
 
 }  // namespace
 
-session::SessionOptions make_session_options(const PackOptions& options, const SourcedScenario& loaded) {
-  session::SessionOptions session;
-  session.agent = options.agent;
-  if (packing::is_python_agent(options.agent)) {
-    session.ask = packing::start_python_agent(options.agent, agent_script(), {options.agent_patience, is_interrupted});
-  }
-  session.decision.seed = options.seed.value_or(loaded.scenario.seed);
-  session.future = choose_future(options.future, loaded.scenario);
-  session.decision.time = options.decision_time;
-  session.threads = options.threads.value_or(core_count());
-  session.decision.threads = session.threads;
-  session.samples = options.samples;
-  session.skips = options.skips;
-  session.simulation.robot = choose_robot(options, loaded.scenario);
+packing::Ask choose_ask(const std::string& agent, double patience) {
+  if (!packing::is_python_agent(agent)) return {};
+  return packing::start_python_agent(agent, agent_script(), {patience, is_interrupted});
+}
+
+session::SessionOptions make_session_options(const PackOptions& options, const model::Scenario& scenario) {
+  session::SessionOptions session = options.session;
+  session.decision.seed = options.seed.value_or(scenario.seed);
+  session.future = choose_future(options.future, scenario);
+  session.threads = session.decision.threads = options.threads.value_or(core_count());
+  session.simulation.robot = choose_robot(options, scenario);
   refuse_tempo_without_fast(options.tempo, options.controller);
   session.simulation.tracking =
       motion::choose_tracking(options.controller, options.tempo, motion::FastTracking{}, "command line");
   session.is_interrupted = is_interrupted;
-  if (options.robot && *options.robot != "none") print_robot_warnings(loaded.scenario);
+  if (options.robot && *options.robot != "none") print_robot_warnings(scenario);
   return session;
 }
 
@@ -170,12 +167,12 @@ study::TrialProgress make_progress_line(const std::string& label) {
 }
 
 int run_pack(const PackOptions& options) {
-  SourcedScenario loaded = load_with_sources(options.scenario, options.changes);
-  model::Scenario& scenario = loaded.scenario;
+  model::Scenario scenario = load_changed(options.scenario, options.changes);
   if (options.random_seed) {
     scenario.sequences.push_back(packing::draw_order(scenario, options.sequence, *options.random_seed));
   }
-  session::SessionOptions session = make_session_options(options, loaded);
+  session::SessionOptions session = make_session_options(options, scenario);
+  session.ask = choose_ask(session.agent, options.agent_patience);
   simulated_plant::SimulatedPlantOptions plant = make_plant_options(options, session);
   if (options.resume) {
     session.resume = session::find_resume_point(session::load_log(*options.resume), *options.resume);

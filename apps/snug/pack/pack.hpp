@@ -17,15 +17,13 @@ struct PackOptions {
   std::string scenario;
   std::string sequence;
   ScenarioChanges changes;
-  std::string agent = "contact-aware";
+  session::SessionOptions
+      session;  ///< agent, decision time, samples and skips as said; the rest is made of what follows
   std::optional<std::uint64_t> seed;
   std::optional<std::uint64_t> random_seed;  ///< the sequence is drawn: every box of the scenario, in random order
   double agent_patience = 600.0;             ///< s, for an answer of an agent in Python
   remote_runs::PlantChoice plant;
-  double decision_time = packing::DecisionRun{}.time;  ///< s
-  std::optional<int> threads;                          ///< absent: all cores
-  int samples = session::SessionOptions{}.samples;
-  std::optional<int> skips;
+  std::optional<int> threads;       ///< absent: all cores
   std::string controller = "fast";  ///< or lagged
   std::optional<double> tempo;      ///< only with fast; absent: 1
   std::string future = "order";
@@ -44,7 +42,10 @@ struct PackOptions {
 
 /// What `pack` and `compare` have in common.
 void add_packing_options(const Verb& verb, PackOptions& options);
-[[nodiscard]] session::SessionOptions make_session_options(const PackOptions& options, const SourcedScenario& loaded);
+/// Who the agent asks is not chosen yet.
+[[nodiscard]] session::SessionOptions make_session_options(const PackOptions& options, const model::Scenario& scenario);
+/// Who decides in the agent's place: a class written in Python, started; nobody for a built-in agent. `patience`: s.
+[[nodiscard]] packing::Ask choose_ask(const std::string& agent, double patience);
 /// Throws InputError for words that say nothing.
 [[nodiscard]] simulated_plant::SimulatedPlantOptions make_plant_options(const PackOptions& options,
                                                                         const session::SessionOptions& session);

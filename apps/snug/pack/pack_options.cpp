@@ -73,13 +73,13 @@ void add_packing_options(const Verb& verb, PackOptions& options) {
   verb.option("--fault", options.fault, "FAULTS",
               "faults of the plant, separated by commas: noseal@N, drop@N, stop@N, displace@N, push@N at the N-th "
               "item; object@N puts a foreign box into the container after it, clear@N takes it out");
-  verb.option("--decision-time", options.decision_time, "SECONDS", "time to decide where an item goes, on one core",
-              within(0.0, 3600.0));
+  verb.option("--decision-time", options.session.decision.time, "SECONDS",
+              "time to decide where an item goes, on one core", within(0.0, 3600.0));
   add_threads(verb, options.threads);
-  verb.option("--samples", options.samples, "N",
+  verb.option("--samples", options.session.samples, "N",
               "sampled worlds in which every motion is rehearsed besides the nominal one, at most 64", whole(0, 64));
   verb.option(
-      "--skips", options.skips, "N",
+      "--skips", options.session.skips, "N",
       "how many items without a place may be skipped before the session ends (default: the scenario's recovery.skips)",
       whole(0, 1000));
   verb.option("--future", options.future, "WHICH",
@@ -99,7 +99,7 @@ void add_pack(CLI::App& app, Action& action) {
               "pack every box of the scenario in a random order, drawn by this seed and the sequence's name; random-1, "
               "random-2, ... are those of compare --random",
               whole(0));
-  verb.option("--agent", options.agent, "NAME|MODULE:CLASS",
+  verb.option("--agent", options.session.agent, "NAME|MODULE:CLASS",
               "agent that decides: a built-in one, or a class written in Python (docs/python.md)",
               one_of(packing::agent_names(), "module:Class"));
   verb.option("--agent-timeout", options.agent_patience, "SECONDS",

@@ -17,21 +17,16 @@ std::vector<std::pair<std::string, std::string>> words_of(const ScenarioChanges&
   return words;
 }
 
-SourcedScenario load_changed(const std::filesystem::path& file, const ScenarioChanges& changes,
-                             const std::function<std::string(const std::string&)>& find_file) {
-  SourcedScenario loaded{load_scenario(file), {}};
-  Scenario& scenario = loaded.scenario;
+Scenario load_changed(const std::filesystem::path& file, const ScenarioChanges& changes,
+                      const std::function<std::string(const std::string&)>& find_file) {
+  Scenario scenario = load_scenario(file);
   std::vector<KeyValue> values;
   for (const std::string& words : changes.set) values.push_back(parse_key_value(words, "--set"));
   scenario = with_values(scenario, values, "--set");
   if (changes.container) scenario = with_container(scenario, *changes.container);
   if (changes.pallet) scenario = with_pallet(scenario, *changes.pallet);
-  loaded.ends.push_back(scenario.parcels.size());
-  for (const std::string& items : changes.items) {
-    add_items(scenario, find_file ? find_file(items) : items);
-    loaded.ends.push_back(scenario.parcels.size());
-  }
-  return loaded;
+  for (const std::string& items : changes.items) add_items(scenario, find_file ? find_file(items) : items);
+  return scenario;
 }
 
 const Parcel& require_parcel(const Scenario& scenario, const std::string& id, std::string_view option) {

@@ -25,15 +25,10 @@ struct ScenarioChanges {
 /// The options --items, --container, --pallet and --set with their values, in the order in which they are applied.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> words_of(const ScenarioChanges& changes);
 
-/// A scenario, and which of its parcels came from which file.
-struct SourcedScenario {
-  Scenario scenario;
-  std::vector<std::size_t> ends;  ///< index behind the last parcel of the scenario file, and of each --items file
-};
 /// The scenario of a file, changed so; its text says the same. `find_file`: where a file of --items is; empty: where it
 /// says. Throws InputError for what cannot be used.
-[[nodiscard]] SourcedScenario load_changed(const std::filesystem::path& file, const ScenarioChanges& changes,
-                                           const std::function<std::string(const std::string&)>& find_file = {});
+[[nodiscard]] Scenario load_changed(const std::filesystem::path& file, const ScenarioChanges& changes,
+                                    const std::function<std::string(const std::string&)>& find_file = {});
 
 /// The box that `option` of a command line names. Throws InputError where there is none, with the nearest.
 [[nodiscard]] const Parcel& require_parcel(const Scenario& scenario, const std::string& id, std::string_view option);

@@ -16,13 +16,6 @@ namespace {
 using internal::OperatorDesk;
 using internal::Run;
 
-void check(const model::Scenario& scenario, const std::string& sequence, const motion::Tracking& tracking) {
-  (void)planning::make_cell_plan(scenario, tracking);  // says what is missing
-  if (model::find_sequence(scenario, sequence) == nullptr) {
-    throw InputError(scenario.source_name, "--sequence", "'" + sequence + "'", "a sequence of the scenario");
-  }
-}
-
 planning::AgentSettings agent_of(const model::Scenario& scenario, const model::Sequence& order,
                                  const SessionOptions& options) {
   planning::AgentSettings agent;
@@ -72,10 +65,10 @@ void go_on(Run& run, const ResumePoint& point) {
   }
 }
 
-/// Who decides in which order: at once, or item by item as they come.
-void prepare(Run& run, const std::string& plant) {
+/// Who decides in which order: at once, or item by item as they come. `order` is the sequence, all boxes of it.
+void prepare(Run& run, const model::Sequence& order, const std::string& plant) {
   planning::BeliefSnapshot& belief = run.belief.edit();
-  belief.agent = agent_of(belief.scenario, *model::find_sequence(belief.scenario, belief.sequence), run.options);
+  belief.agent = agent_of(belief.scenario, order, run.options);
   belief.skips_left = run.options.skips.value_or(belief.scenario.recovery.skips);
   event::SessionStarted started{belief.sequence, belief.agent.name, plant, {}, false, belief.simulation.tracking};
   for (const packing::Item& item : belief.items) started.items.emplace_back(item.id);
@@ -111,8 +104,8 @@ void execute(Run& run) {
 
 SessionResult pack(const model::Scenario& scenario, const std::string& sequence, const SessionOptions& options,
                    plant::Plant& plant, const Progress& progress) {
-  const motion::Tracking& tracking = options.simulation.tracking;
-  check(scenario, sequence, tracking);
+  planning::CellPlan cell = planning::make_cell_plan(scenario, options.simulation.tracking);
+  const model::Sequence& order = cell::require_sequence(scenario, sequence);
   ResultFold result;
   int begun = 0, told = 0, total = 0;  // items
   const EventSink log = [&](const SessionEvent& one) {
@@ -127,14 +120,14 @@ SessionResult pack(const model::Scenario& scenario, const std::string& sequence,
   };
   Run run{options,
           log,
-          planning::make_cell_plan(scenario, tracking),
+          std::move(cell),
           Belief(scenario, sequence, {options.samples, options.decision.seed, options.simulation}),
           Executor(plant, scenario, log),
           {},
           Decisions({options.decision.time, options.threads}, options.ask, options.save_beliefs),
           OperatorDesk(options.operator_orders),
           std::nullopt};
-  prepare(run, plant.describe().name);
+  prepare(run, order, plant.describe().name);
   if (!run.options.resume) total = static_cast<int>(run.agenda.order.size());
   if (run.options.resume && run.options.takes_over) internal::take_over(run);
   execute(run);

@@ -2,6 +2,7 @@
 #include "snug/session/task.hpp"
 
 #include "snug/cell/aligner_feed.hpp"
+#include "snug/cell/simulation.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/skills/highest_fixed_point.hpp"
 
@@ -23,10 +24,7 @@ Expected<motion::Program, skills::NoProgramReason> make_program(const model::Sce
                                                                 const std::string& sequence_name,
                                                                 const std::vector<model::PlacementEntry>& placements,
                                                                 const std::string& placements_name) {
-  const model::Sequence* sequence = model::find_sequence(scenario, sequence_name);
-  if (sequence == nullptr) {
-    throw InputError(scenario.source_name, "--sequence", "'" + sequence_name + "'", "a sequence of the scenario");
-  }
+  const model::Sequence& sequence = cell::require_sequence(scenario, sequence_name);
   const model::Container* container = model::find_container(scenario, scenario.target);
   if (!scenario.aligner || container == nullptr) {
     throw InputError(scenario.source_name, "", "", "a cell with an aligner and a target container");
@@ -36,7 +34,7 @@ Expected<motion::Program, skills::NoProgramReason> make_program(const model::Sce
   for (const model::PlacementEntry& placement : placements) {
     skills::PickSpec pick;
     pick.box = placement.parcel;
-    pick.X_WP = cell::pose_at_aligner(scenario, item_of(*sequence, placement, placements_name), std::nullopt);
+    pick.X_WP = cell::pose_at_aligner(scenario, item_of(sequence, placement, placements_name), std::nullopt);
     pick.size = model::collision_size(scenario, *model::find_parcel(scenario, placement.parcel));
     picks.push_back(pick);
     wanted.push_back({placement.parcel, placement.X_TP});
