@@ -65,23 +65,25 @@ struct Heat {
   int threads;
   int skips;
   std::vector<RollOutWork> work;
-  struct Tree {
-    int entrant = -1;
-    std::optional<RollOutTree> of;
-  };
-  std::vector<Tree> trees;  ///< of each thread: of the entrant that it had last
+  std::vector<std::vector<RollOutTree>> trees;  ///< of each entrant, one for each part of the futures
 
   void run(std::vector<Standing>& field, const std::vector<Future>& futures) {
-    const int per = static_cast<int>(futures.size());
-    const int count = static_cast<int>(field.size()) * per;
-    std::vector<double> volume(static_cast<std::size_t>(count), 0.0);
-    parallel_for(count, threads, [&](int job, int thread) {
-      const int entrant = field[static_cast<std::size_t>(job / per)].entrant;
-      Tree& tree = trees[static_cast<std::size_t>(thread)];
-      if (tree.entrant != entrant) tree = {entrant, RollOutTree(entrants[static_cast<std::size_t>(entrant)])};
-      volume[static_cast<std::size_t>(job)] =
-          tree.of->roll_out(policy, prospect, futures[static_cast<std::size_t>(job % per)], skips,
-                            work[static_cast<std::size_t>(thread)]);
+    const int per = static_cast<int>(futures.size()), entered = static_cast<int>(field.size());
+    // Two jobs for each thread, or one for each entrant: the fewer the parts, the more futures share a tree.
+    const int parts = std::clamp((2 * threads + entered - 1) / std::max(1, entered), 1, std::max(1, per));
+    std::vector<double> volume(static_cast<std::size_t>(entered * per), 0.0);
+    for (const Standing& one : field) {
+      const auto entrant = static_cast<std::size_t>(one.entrant);
+      trees[entrant].resize(std::max(trees[entrant].size(), static_cast<std::size_t>(parts)),
+                            RollOutTree(entrants[entrant]));
+    }
+    parallel_for(entered * parts, threads, [&](int job, int thread) {
+      const int place = job / parts, part = job % parts;
+      const auto entrant = static_cast<std::size_t>(field[static_cast<std::size_t>(place)].entrant);
+      for (int i = part * per / parts; i < (part + 1) * per / parts; ++i) {
+        volume[static_cast<std::size_t>(place * per + i)] = trees[entrant][static_cast<std::size_t>(part)].roll_out(
+            policy, prospect, futures[static_cast<std::size_t>(i)], skips, work[static_cast<std::size_t>(thread)]);
+      }
     });
     const auto first = std::ranges::find(field, 0, &Standing::entrant) - field.begin();
     for (std::size_t i = 0; i < field.size(); ++i) {
@@ -206,7 +208,7 @@ std::vector<Standing> race(const std::vector<Layout>& entrants, const Policy& po
             threads,
             settings.skips,
             std::vector<RollOutWork>(static_cast<std::size_t>(threads)),
-            std::vector<Heat::Tree>(static_cast<std::size_t>(threads))};
+            std::vector<std::vector<RollOutTree>>(entrants.size())};
   Rng rng = Rng(settings.seed).split("futures");
   std::size_t left = field.size();
   int rounds = 1;
