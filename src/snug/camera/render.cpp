@@ -20,7 +20,9 @@ using internal::pixel_bits;
 constexpr int kRowsRenderedAtOnce = 32;
 constexpr double kReaches = 3.0;      // of interreflection: what is left at that many is 5 %
 constexpr int kFarthestCorner = 200;  // px: distances are kept in 8 bits
-constexpr double kLitDepth = 3e-3;    // m: what the projector sees within this of a point is the point
+// m: what the projector sees within this of a point is the point. Its picture is read at the nearest pixel: half of a
+// pixel of 1.0 mm (0.9 m, 902 px) on a face 80 degrees from square to the ray makes 2.8 mm.
+constexpr double kLitDepth = 3e-3;
 
 /// The camera as it is: pose and focal lengths with their errors.
 CastView true_view(const model::CameraParams& camera, const CameraDraw& draw) {

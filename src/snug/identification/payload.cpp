@@ -20,9 +20,13 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr int kLawIterations = 6;       // each reduces the error by some 20 at 20 degrees of bending
 constexpr double kOverlap = 4.0 / 3.0;  // of variance: neighbouring windows share a sixth of their squares
+// On 400 noisy lifts of 16 loads (2026-11) the centre of mass is found to 1.73 mm rms; the third step changes that by
+// 5e-5 mm, the fourth by less. Of lifts that end after a third, 2, 3, 4 and 8 steps leave 80.6, 80.2, 81.5 and 80.0 mm.
 constexpr int kGyrationSteps = 4;
-constexpr double kFirstGyration = 3.0;  // of the deviation expected, before the centre of mass is known
-constexpr double kLever = 0.1;          // m, of pose noise on torques: a box's size
+// Of the deviation expected, before the centre of mass is known. Whole lifts come out the same with 1.5 and 6; those
+// that end after a third are 79.5 and 86.1 mm off then.
+constexpr double kFirstGyration = 3.0;
+constexpr double kLever = 0.1;  // m, of pose noise on torques: a box's size
 
 using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 
