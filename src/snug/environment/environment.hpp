@@ -33,7 +33,7 @@ struct Settings {
   /// s, Statics and Executed: physics steps are as long as this allows, in whole parts of the controller's tick, and no
   /// shorter than the scenario's; 0: the scenario's. Measured in docs/python.md.
   double time_step = 0.004;
-  bool varies = false;       ///< the cell is drawn anew for each episode, from the scenario's uncertainty
+  bool varies = false;  ///< the cell is drawn anew for each episode, from the scenario's uncertainty
   /// When a box counts as placed: how far it may come to rest from where it was meant to, m and rad.
   double max_displacement = 0.020;
   double max_tilt = 0.10471975511965977;
