@@ -208,7 +208,7 @@ export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void }
   name.addEventListener("input", () => (isNameTyped = true));
   const ofPlants = [field("Plants", plants), field("First plant seed", seed)];
   const ofServed = [field("Address", address), field("Perception", perception)];
-  const ofRobot = [field("Address that reports the boxes", observe), make("label", "check", moves, "A robot elsewhere moves")];
+  const ofRobot = [field("Source of the box poses", observe), make("label", "check", moves, "A robot elsewhere moves")];
   function showPlant(): void {
     for (const one of ofPlants) one.hidden = isServed();
     for (const one of ofServed) one.hidden = !isServed();
