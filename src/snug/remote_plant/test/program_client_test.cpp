@@ -102,7 +102,7 @@ TEST(ProgramClient, EndsWhereTheTimeOfTheSimulatorStandsStill) {
   settings.patience = 0.5;
   const ProgramClientResult result = run_program(client, simulation.scenario(), *simulation.arm(), plan, settings);
   EXPECT_TRUE(result.has_begun);
-  EXPECT_NE(result.failure.find("stands still at 0 s"), std::string::npos) << result.failure;
+  EXPECT_NE(result.failure.find("stays at 0 s"), std::string::npos) << result.failure;
   EXPECT_LT(result.wall, 30.0);
 }
 
