@@ -17,7 +17,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     list(APPEND SNUG_WARNINGS -Wno-dangling-reference)
   endif()
 endif()
-# Warnings are errors only by compilers that portability.yml checks: a newer one finds what nobody could know.
+# Warnings are errors only with compilers that portability.yml names: a newer one warns of things that nobody could know.
 if(SNUG_WERROR AND NOT (CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 15) AND
    NOT (CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 20))
   message(STATUS "warnings of ${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION} are not taken for errors")

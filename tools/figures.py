@@ -9,6 +9,7 @@
 Names: first-run, sessions, acceptance, bench, ur, ur-frames. `acceptance` needs the demonstrator's own programs (--programs FOLDER). The same commit gives the same text on
 every machine; beneath each table stands the commit that last changed the program, and what it was made on."""
 import argparse
+import functools
 import json
 import os
 import platform
@@ -42,6 +43,7 @@ def run(words, *more):
     return done.stdout
 
 
+@functools.cache  # of the program that the figures were begun with
 def commit():
     """The last one that changed the program or what it reads."""
     done = subprocess.run(["git", "log", "-1", "--format=%h", "--", "src", "apps", "scenarios"], cwd=ROOT, capture_output=True, text=True, check=False)

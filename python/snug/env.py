@@ -49,7 +49,7 @@ class Packing(spaces.Env):
         planned_interference: m (`squeeze` in earlier scripts), boxes are planned this much smaller along Tx and Ty.
         settle_time: s, in mode "statics".
         time_step: s, how long physics steps may be in modes "statics" and "executed", in whole parts of the controller's
-            tick and no shorter than the scenario's; 0: the scenario's. What 4 ms change is measured in docs/python.md.
+            tick and no shorter than the scenario's; 0: the scenario's. docs/python.md says what 4 ms change.
         max_displacement, max_tilt: m and rad, how far a box may come to rest from where it was put.
         vary: True: the cell is drawn anew for each episode, from the scenario's `uncertainty`: sizes, masses, friction,
             cup, aligner. `scenario.with_values({"uncertainty.size": 0.002})` sets a half width.

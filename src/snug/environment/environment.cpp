@@ -8,6 +8,7 @@
 #include "snug/core/hash.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/environment/internal/placer.hpp"
+#include "snug/model/scenario_changes.hpp"
 
 namespace snug::environment {
 namespace {
@@ -56,13 +57,6 @@ model::Scenario with_parameters(model::Scenario scenario, const Parameters& p) {
   return scenario;
 }
 
-/// With the physics steps that the settings allow.
-model::Scenario with_time_step(model::Scenario scenario, double longest) {
-  const double parts = std::max(1.0, std::ceil(scenario.controller.tick / longest - 1e-9));
-  if (longest > 0.0) scenario.time_step = std::max(scenario.time_step, scenario.controller.tick / parts);
-  return scenario;
-}
-
 /// The sequence that is named, or every parcel in the scenario's order.
 model::Sequence sequence_of(const model::Scenario& scenario, const std::string& name) {
   model::Sequence sequence;
@@ -97,7 +91,7 @@ packing::PackingSettings rules_of(const Settings& settings) {
 struct Environment::State {
   State(const model::Scenario& from, const Settings& asked, const Parameters& parameters)
       : settings(asked),
-        scenario((check(asked, parameters), with_time_step(with_parameters(from, parameters), asked.time_step))),
+        scenario((check(asked, parameters), model::with_time_step(with_parameters(from, parameters), asked.time_step))),
         base(sequence_of(scenario, asked.sequence)),
         container(packing::make_container_state(container_of(scenario))),
         finder(container, rules_of(asked)) {

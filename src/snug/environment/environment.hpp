@@ -31,7 +31,7 @@ struct Settings {
   int max_steps = 1000;      ///< an episode that has not ended then is truncated
   double settle_time = 0.5;  ///< s, Statics
   /// s, Statics and Executed: physics steps are as long as this allows, in whole parts of the controller's tick, and no
-  /// shorter than the scenario's; 0: the scenario's. Measured in docs/python.md.
+  /// shorter than the scenario's; 0: the scenario's. docs/python.md says what 4 ms change.
   double time_step = 0.004;
   bool varies = false;  ///< the cell is drawn anew for each episode, from the scenario's uncertainty
   /// When a box counts as placed: how far it may come to rest from where it was meant to, m and rad.

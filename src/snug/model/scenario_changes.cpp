@@ -1,6 +1,9 @@
 // ScenarioChanges: more boxes, another container, a pallet, single keys: what is said of a scenario for one run.
 #include "snug/model/scenario_changes.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "snug/core/input_error.hpp"
 #include "snug/model/items_file.hpp"
 #include "snug/model/other_container.hpp"
@@ -26,6 +29,13 @@ Scenario load_changed(const std::filesystem::path& file, const ScenarioChanges& 
   if (changes.container) scenario = with_container(scenario, *changes.container);
   if (changes.pallet) scenario = with_pallet(scenario, *changes.pallet);
   for (const std::string& items : changes.items) add_items(scenario, find_file ? find_file(items) : items);
+  return scenario;
+}
+
+Scenario with_time_step(Scenario scenario, double longest) {
+  if (!(longest > 0.0)) return scenario;
+  const double parts = std::max(1.0, std::ceil(scenario.controller.tick / longest - 1e-9));
+  scenario.time_step = std::max(scenario.time_step, scenario.controller.tick / parts);
   return scenario;
 }
 

@@ -1,7 +1,6 @@
 // ScenarioChanges: more boxes, another container, a pallet, single keys: what is said of a scenario for one run.
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -29,6 +28,10 @@ struct ScenarioChanges {
 /// says. Throws InputError for what cannot be used.
 [[nodiscard]] Scenario load_changed(const std::filesystem::path& file, const ScenarioChanges& changes,
                                     const std::function<std::string(const std::string&)>& find_file = {});
+
+/// With time steps as long as `longest` [s] allows, in whole parts of the controller's tick and no shorter than the
+/// scenario's; 0: the scenario's.
+[[nodiscard]] Scenario with_time_step(Scenario scenario, double longest);
 
 /// The box that `option` of a command line names. Throws InputError where there is none, with the nearest.
 [[nodiscard]] const Parcel& require_parcel(const Scenario& scenario, const std::string& id, std::string_view option);

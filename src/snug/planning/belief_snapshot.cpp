@@ -2,22 +2,16 @@
 #include "snug/planning/belief_snapshot.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <unordered_set>
 #include <utility>
 
 #include "snug/cell/drawn_scenario.hpp"
 #include "snug/core/hash.hpp"
+#include "snug/model/scenario_changes.hpp"
 #include "snug/planning/belief_json.hpp"
 
 namespace snug::planning {
 namespace {
-
-model::Scenario coarse(model::Scenario scenario, int factor) {
-  const double step = factor * scenario.time_step, ticks = scenario.controller.tick / step;
-  if (factor > 1 && ticks > 0.99 && std::abs(ticks - std::round(ticks)) < 1e-9) scenario.time_step = step;
-  return scenario;
-}
 
 /// Without boxes and orders that do not come: they would take time and change what is drawn of those that do.
 model::Scenario order_alone(model::Scenario scenario, const std::string& sequence) {
@@ -35,11 +29,11 @@ std::vector<World> draw_worlds(const model::Scenario& scenario, const std::strin
                                int samples) {
   const Rng rng(seed);
   const model::Scenario nominal = cell::with_fixed_arrivals(order_alone(scenario, sequence), sequence);
-  const int steps = scenario.rehearsal.coarse_steps;
-  std::vector<World> worlds{{coarse(nominal, steps), {}, 1.0}};
+  const double longest = scenario.rehearsal.coarse_steps * scenario.time_step;
+  std::vector<World> worlds{{model::with_time_step(nominal, longest), {}, 1.0}};
   for (int i = 0; i < samples; ++i) {
     const Rng own = rng.split("sample " + std::to_string(i));
-    worlds.push_back({coarse(cell::draw_scenario(nominal, sequence, own), steps), {}, 1.0});
+    worlds.push_back({model::with_time_step(cell::draw_scenario(nominal, sequence, own), longest), {}, 1.0});
   }
   const std::size_t items = cell::require_sequence(worlds[0].scenario, sequence).items.size();
   for (World& world : worlds) world.X_WP.resize(items);

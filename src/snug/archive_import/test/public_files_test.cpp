@@ -20,6 +20,14 @@ namespace fs = std::filesystem;
 using record::PoseSample;
 using test::expect_refusal;
 
+class PublicFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::getenv("SNUG_MEASUREMENTS_FOLDER") == nullptr)
+      GTEST_SKIP() << "SNUG_MEASUREMENTS_FOLDER does not name a folder of public measurements";
+  }
+};
+
 /// The file in the folder, as REPOSITORY/PATH; nothing, and a line, where it is not there.
 std::optional<fs::path> find_public(const std::string& name) {
   const char* folder = std::getenv("SNUG_MEASUREMENTS_FOLDER");
@@ -85,9 +93,10 @@ Hints of_angles(const std::string& unit, const std::string& order) {
   return hints;
 }
 
-TEST(PublicFiles, PosesAreThoseOfAnotherProgram) {
-  if (std::getenv("SNUG_MEASUREMENTS_FOLDER") == nullptr)
-    GTEST_SKIP() << "SNUG_MEASUREMENTS_FOLDER does not name a folder of public measurements";
+TEST_F(PublicFiles, PosesAreThoseOfAnotherProgram) {
+  // One bag, plain and in two compressions.
+  const Seven turtle_first{5.544444561005, 5.544444561005, 0, 1, 0, 0, 0};
+  const Seven turtle_last{0.9977187514305, 0.7498267292976, 0, 0.5062202901309, 0, 0, 0.8624042079326};
   const PublicPose files[] = {
       {"pool-experiment/optitrack.csv",
        "Right Hand",
@@ -221,27 +230,9 @@ TEST(PublicFiles, PosesAreThoseOfAnotherProgram) {
        2502,
        {4.365196653968, 7.579351695735, 0, 0.9960720972506, 0, 0, 0.0885459037948},
        {7.196878101977, 7.785064163973, 0, 0.9936223145994, 0, 0, -0.1127594604905}},
-      {"rosbag/fixtures/example.bag",
-       "turtle1",
-       {},
-       1344,
-       1344,
-       {5.544444561005, 5.544444561005, 0, 1, 0, 0, 0},
-       {0.9977187514305, 0.7498267292976, 0, 0.5062202901309, 0, 0, 0.8624042079326}},
-      {"rosbag/fixtures/example-bz2.bag",
-       "turtle1",
-       {},
-       1344,
-       1344,
-       {5.544444561005, 5.544444561005, 0, 1, 0, 0, 0},
-       {0.9977187514305, 0.7498267292976, 0, 0.5062202901309, 0, 0, 0.8624042079326}},
-      {"rosbag/fixtures/example-lz4.bag",
-       "turtle1",
-       {},
-       1344,
-       1344,
-       {5.544444561005, 5.544444561005, 0, 1, 0, 0, 0},
-       {0.9977187514305, 0.7498267292976, 0, 0.5062202901309, 0, 0, 0.8624042079326}},
+      {"rosbag/fixtures/example.bag", "turtle1", {}, 1344, 1344, turtle_first, turtle_last},
+      {"rosbag/fixtures/example-bz2.bag", "turtle1", {}, 1344, 1344, turtle_first, turtle_last},
+      {"rosbag/fixtures/example-lz4.bag", "turtle1", {}, 1344, 1344, turtle_first, turtle_last},
       {"rigid-body-motion/tests/test_data/test.bag",
        "t265_tracker",
        {},
@@ -266,9 +257,7 @@ TEST(PublicFiles, PosesAreThoseOfAnotherProgram) {
   }
 }
 
-TEST(PublicFiles, JointsAreThoseOfAnotherProgram) {
-  if (std::getenv("SNUG_MEASUREMENTS_FOLDER") == nullptr)
-    GTEST_SKIP() << "SNUG_MEASUREMENTS_FOLDER does not name a folder of public measurements";
+TEST_F(PublicFiles, JointsAreThoseOfAnotherProgram) {
   const struct {
     std::string file;
     Hints hints;
@@ -321,9 +310,7 @@ TEST(PublicFiles, JointsAreThoseOfAnotherProgram) {
   }
 }
 
-TEST(PublicFiles, WhatIsRefusedIsToldWhy) {
-  if (std::getenv("SNUG_MEASUREMENTS_FOLDER") == nullptr)
-    GTEST_SKIP() << "SNUG_MEASUREMENTS_FOLDER does not name a folder of public measurements";
+TEST_F(PublicFiles, WhatIsRefusedIsToldWhy) {
   const struct {
     std::string file, part;
   } files[] = {

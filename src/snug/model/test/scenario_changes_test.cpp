@@ -30,6 +30,18 @@ TEST(ScenarioChanges, AreAppliedAndSaidAgainAsWords) {
   EXPECT_GT(loaded.parcels.size(), plain.parcels.size());
 }
 
+TEST(WithTimeStep, IsAWholePartOfTheTickAndNoShorterThanTheScenarios) {
+  Scenario scenario = load_scenario(kSource / "scenarios/box-demonstrator.yaml");
+  scenario.time_step = 0.001;
+  scenario.controller.tick = 0.008;
+  const auto step = [&](double longest) { return with_time_step(scenario, longest).time_step; };
+  EXPECT_EQ(step(0.0), 0.001);
+  EXPECT_EQ(step(0.0005), 0.001);
+  EXPECT_EQ(step(0.002), 0.002);
+  EXPECT_DOUBLE_EQ(step(0.003), 0.008 / 3.0);
+  EXPECT_EQ(step(0.1), 0.008);
+}
+
 TEST(RequireParcel, NamesTheNearest) {
   const Scenario scenario = load_scenario(kSource / "scenarios/box-demonstrator.yaml");
   const std::string id = scenario.parcels.front().id;
