@@ -27,14 +27,6 @@ class Draw {
   Rng rng_;
 };
 
-void scale(model::CupElasticity& elasticity, double by) {
-  elasticity.lateral *= by;
-  elasticity.axial *= by;
-  elasticity.bend *= by;
-  elasticity.torsion *= by;
-  elasticity.coupling *= by;
-}
-
 void draw_parcels(const model::Uncertainty& half_width, const Rng& rng, model::Scenario& scenario) {
   Draw size(rng, "size"), com(rng, "com"), mass(rng, "mass"), common(rng, "common size");
   const double grown = common.factor(half_width.size_common);
@@ -92,7 +84,7 @@ void draw_aligner(const model::Uncertainty& half_width, const std::string& seque
 void draw_gripper(const model::Uncertainty& half_width, const Rng& rng, model::Scenario& scenario) {
   Draw cup(rng, "cup"), push(rng, "release push"), tracking(rng, "tracking");
   const double stiffer = cup.factor(half_width.cup_stiffness), more_damped = cup.factor(half_width.cup_stiffness);
-  scale(scenario.cup.stiffness, stiffer);
+  model::scale_stiffness(scenario.cup, stiffer);
   scale(scenario.cup.damping, more_damped);
   const double longer =
       std::max(cup.within(half_width.cup_length), scenario.cup.centre_from_lip - scenario.cup.hold_length);

@@ -132,9 +132,14 @@ SuctionCup cup_at(const model::CupParams& params, double pressure_gauge, const P
   const double length = unloaded_length(params, pressure_gauge);
   const double stiffness = params.free_stiffness_ratio + s * (1.0 - params.free_stiffness_ratio);
   const double damping = params.free_damping_ratio + s * (1.0 - params.free_damping_ratio);
-  return {stiffness * as_matrix(params.stiffness), damping * as_matrix(params.damping),
-          Pose{Matrix3::Identity(), Vector3(0.0, 0.0, length - params.centre_from_lip)}, X_PS,
-          Pose{Matrix3::Identity(), Vector3(0.0, 0.0, -params.centre_from_lip)}};
+  model::CupLaw law = params.law;
+  law.scale(stiffness);
+  return {stiffness * as_matrix(params.stiffness),
+          damping * as_matrix(params.damping),
+          Pose{Matrix3::Identity(), Vector3(0.0, 0.0, length - params.centre_from_lip)},
+          X_PS,
+          Pose{Matrix3::Identity(), Vector3(0.0, 0.0, -params.centre_from_lip)},
+          law};
 }
 
 void advance_pressure(const model::CupParams& params, const CupCommand& command, double dt, CupState& state) {

@@ -1,6 +1,8 @@
 // SuctionCup: the cup as a force element between the gripper's end and a held package.
 #include "snug/cup/suction_cup.hpp"
 
+#include "snug/cup/potential_law.hpp"
+
 namespace snug::cup {
 
 /// Everything that the spring and the damper need at one instant.
@@ -14,13 +16,13 @@ struct SuctionCup::State {
 };
 
 SuctionCup::SuctionCup(const Matrix6& stiffness, const Matrix6& damping, const Pose& X_ES2, const Pose& X_PS,
-                       const Pose& X_SS1)
-    : K_(stiffness), D_(damping), X_ES2_(X_ES2), X_PS_(X_PS), X_SS1_(X_SS1) {}
+                       const Pose& X_SS1, const model::CupLaw& law)
+    : K_(stiffness), D_(damping), X_ES2_(X_ES2), X_PS_(X_PS), X_SS1_(X_SS1), law_(law) {}
 
 SuctionCup::SuctionCup(const model::CupParams& params, const Pose& X_PS)
     : SuctionCup(as_matrix(params.stiffness), as_matrix(params.damping),
                  Pose{Matrix3::Identity(), Vector3(0.0, 0.0, params.hold_length - params.centre_from_lip)}, X_PS,
-                 Pose{Matrix3::Identity(), Vector3(0.0, 0.0, -params.centre_from_lip)}) {}
+                 Pose{Matrix3::Identity(), Vector3(0.0, 0.0, -params.centre_from_lip)}, params.law) {}
 
 SuctionCup::State SuctionCup::state_of(const physics::ElementQuery& query) const noexcept {
   State state;
@@ -41,17 +43,19 @@ physics::ElementResponse SuctionCup::evaluate(const physics::ElementQuery& query
   const Vector3& r = state.p_PcmS1;
   Matrix6 A;  // twist of S1 in its own axes from the velocity of the centre of mass and the angular velocity in W
   A << R.transpose(), -R.transpose() * skew(r), Matrix3::Zero(), R.transpose();
-  const Vector6 spring = spring_wrench(state.H, K_);
-  const Vector6 both = spring - D_ * state.twist_S1;
+  const LawResponse spring =
+      law_.is_used() ? law_response(law_, state.H)
+                     : LawResponse{potential(state.H, K_), spring_wrench(state.H, K_), spring_tangent(state.H, K_)};
+  const Vector6 both = spring.wrench - D_ * state.twist_S1;
   physics::ElementResponse response;
   response.wrench = A.transpose() * both;
-  response.energy = potential(state.H, K_);
+  response.energy = spring.energy;
   response.damping = A.transpose() * D_ * A;
   // Velocities in the axes of S1 change too when the package moves at constant velocities in W.
   Matrix6 T;
   T << -R.transpose() * skew(query.V_WE.angular), R.transpose() * (skew(state.linear) - skew(state.angular) * skew(r)),
       Matrix3::Zero(), R.transpose() * skew(state.angular);
-  response.stiffness = A.transpose() * (D_ * T - spring_tangent(state.H, K_) * A);
+  response.stiffness = A.transpose() * (D_ * T - spring.tangent * A);
   // The wrench turns with the package, and so does its arm.
   const Vector3 force_W = R * both.head<3>(), torque_W = R * both.tail<3>();
   response.stiffness.topRightCorner<3, 3>() += skew(force_W);
@@ -61,8 +65,8 @@ physics::ElementResponse SuctionCup::evaluate(const physics::ElementQuery& query
 
 Wrench SuctionCup::lip_wrench(const physics::ElementQuery& query) const noexcept {
   const State state = state_of(query);
-  const Vector6 wrench_S1 = spring_wrench(state.H, K_) - D_ * state.twist_S1;
-  return wrench_from(wrench_transform(X_SS1_) * wrench_S1);
+  const Vector6 spring = law_.is_used() ? law_response(law_, state.H).wrench : spring_wrench(state.H, K_);
+  return wrench_from(wrench_transform(X_SS1_) * (spring - D_ * state.twist_S1));
 }
 
 }  // namespace snug::cup

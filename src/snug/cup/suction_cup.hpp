@@ -11,8 +11,10 @@ namespace snug::cup {
 class SuctionCup final : public physics::ForceElement {
  public:
   SuctionCup() = default;
-  /// `stiffness` K and `damping` D in S1. X_PS: the lip on the package, fixed when it sealed.
-  SuctionCup(const Matrix6& stiffness, const Matrix6& damping, const Pose& X_ES2, const Pose& X_PS, const Pose& X_SS1);
+  /// `stiffness` K and `damping` D in S1. X_PS: the lip on the package, fixed when it sealed. `law` is used in place of
+  /// K where it is one that is used.
+  SuctionCup(const Matrix6& stiffness, const Matrix6& damping, const Pose& X_ES2, const Pose& X_PS, const Pose& X_SS1,
+             const model::CupLaw& law = {});
   /// The cup of the parameters under vacuum.
   SuctionCup(const model::CupParams& params, const Pose& X_PS);
 
@@ -32,6 +34,7 @@ class SuctionCup final : public physics::ForceElement {
   Pose X_ES2_;
   Pose X_PS_;
   Pose X_SS1_;
+  model::CupLaw law_;
 };
 
 }  // namespace snug::cup

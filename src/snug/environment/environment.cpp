@@ -36,10 +36,6 @@ void check(const Settings& s, const Parameters& p) {
                  "above 0, at most 100");
 }
 
-void scale(model::CupElasticity& cup, double factor) {
-  for (double* value : {&cup.lateral, &cup.axial, &cup.bend, &cup.torsion, &cup.coupling}) *value *= factor;
-}
-
 /// What scaling lengths and masses leaves of a scenario, written nowhere: parameters are few and say it themselves.
 model::Scenario with_parameters(model::Scenario scenario, const Parameters& p) {
   for (model::Parcel& parcel : scenario.parcels) {
@@ -51,7 +47,7 @@ model::Scenario with_parameters(model::Scenario scenario, const Parameters& p) {
   }
   for (model::ContactPair& pair : scenario.contact_pairs) pair.params.friction *= p.friction_scale;
   if (scenario.default_contact) scenario.default_contact->friction *= p.friction_scale;
-  scale(scenario.cup.stiffness, p.cup_scale);
+  model::scale_stiffness(scenario.cup, p.cup_scale);
   scale(scenario.cup.damping, p.cup_scale);
   model::vary_cups(p.cup_scale, p.cup_scale, 0.0, scenario.gripper);
   return scenario;

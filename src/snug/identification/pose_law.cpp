@@ -6,13 +6,17 @@
 #include <cmath>
 
 #include "snug/core/input_error.hpp"
+#include "snug/cup/law.hpp"
+#include "snug/cup/law_derivatives.hpp"
+#include "snug/cup/potential_law.hpp"
 #include "snug/identification/cup_poses.hpp"
 
 namespace snug::identification {
 namespace {
 
 constexpr int kAxial = 6, kShear = 3, kTorsion = 2, kTare = 6;
-constexpr int kLaw = kAxial + 3 * kShear + kTorsion, kLawAndTare = kLaw + kTare;
+static_assert(kAxial + 3 * kShear + kTorsion == cup::kLawTerms);
+constexpr int kLaw = cup::kLawTerms, kLawAndTare = kLaw + kTare;
 constexpr int kParts = 5;                 // of poses held back in turn
 constexpr std::size_t kFewestPoses = 60;  // 288 numbers of four fifths of them against 23 and the frames' 6
 using LawColumns = Eigen::Matrix<double, 6, kLawAndTare>;
@@ -20,52 +24,19 @@ using LawColumns = Eigen::Matrix<double, 6, kLawAndTare>;
 /// q = e / 2 of the law in section 1 of docs/theory/cup.md, and dq = J nu of the body twist of S1.
 struct Deformation {
   Vector6 q;
-  Matrix6 J = Matrix6::Zero();
+  Matrix6 J;
 };
 
 Deformation deformation_of(const Vector3& centre_B, const Pose& X_BS) {
-  const Vector3 o = X_BS * centre_B - centre_B, a = X_BS.R.transpose() * o;
-  const Matrix3& R = X_BS.R;
-  Deformation out;
-  out.q << 0.5 * (o + a), 0.5 * Vector3(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
-  out.J.topLeftCorner<3, 3>() = 0.5 * (Matrix3::Identity() + R);
-  out.J.topRightCorner<3, 3>() = 0.5 * skew(a);
-  out.J.bottomRightCorner<3, 3>() = 0.5 * (R.trace() * Matrix3::Identity() - R.transpose());
-  return out;
-}
-
-/// dV/dq for each coefficient, and V itself.
-Eigen::Matrix<double, 6, kLaw> gradients(const Vector6& q, double middle, double half_range,
-                                         Eigen::Matrix<double, 1, kLaw>& energy) {
-  Eigen::Matrix<double, 6, kLaw> g = Eigen::Matrix<double, 6, kLaw>::Zero();
-  const double x = q[0], y = q[1], u = (q[2] - middle) / half_range, a = q[3], b = q[4], c = q[5];
-  int column = 0;
-  double power = 1.0;
-  for (int i = 0; i < kAxial; ++i, power *= u) {
-    g(2, column) = power;
-    energy[column++] = half_range * power * u / (i + 1);
-  }
-  const auto add = [&](int terms, double value, const Vector6& slope) {
-    double before = 0.0, now = 1.0;  // u^(i-1), u^i
-    for (int i = 0; i < terms; ++i, before = now, now *= u) {
-      g.col(column) = now * slope;
-      g(2, column) += i * before / half_range * value;
-      energy[column++] = now * value;
-    }
-  };
-  add(kShear, 0.5 * (x * x + y * y), (Vector6() << x, y, 0, 0, 0, 0).finished());
-  add(kShear, 0.5 * (a * a + b * b), (Vector6() << 0, 0, 0, a, b, 0).finished());
-  add(kShear, x * b - y * a, (Vector6() << b, -a, 0, -y, x, 0).finished());
-  add(kTorsion, 0.5 * c * c, (Vector6() << 0, 0, 0, 0, 0, c).finished());
-  return g;
+  const Pose H{X_BS.R, X_BS * centre_B - centre_B};
+  return {0.5 * cup::deformation(H), 0.5 * cup::deformation_jacobian(H)};
 }
 
 /// What the sensor reads for each coefficient at 1.
 LawColumns columns_of(const PotentialLaw& law, const Pose& X_BS) {
   const Deformation deformation = deformation_of(law.centre_B, X_BS);
-  Eigen::Matrix<double, 1, kLaw> energy;
   const Eigen::Matrix<double, 6, kLaw> f =
-      -deformation.J.transpose() * gradients(deformation.q, law.middle, law.half_range, energy);
+      -deformation.J.transpose() * cup::law_terms(deformation.q, law.middle, law.half_range).gradient;
   LawColumns out = LawColumns::Zero();
   out.topLeftCorner<3, kLaw>() = X_BS.R * f.topRows<3>();
   out.bottomLeftCorner<3, kLaw>() =
@@ -214,9 +185,8 @@ std::string unit_of_coefficient(const std::string& name) {
 Vector6 predict_wrench(const PotentialLaw& law, const Pose& X_BS) { return columns_of(law, X_BS) * law.coefficients; }
 
 double stored_energy(const PotentialLaw& law, const Pose& X_BS) {
-  Eigen::Matrix<double, 1, kLaw> energy;
-  (void)gradients(deformation_of(law.centre_B, X_BS).q, law.middle, law.half_range, energy);
-  return energy.dot(law.coefficients.head<kLaw>().transpose());
+  const cup::LawTerms terms = cup::law_terms(deformation_of(law.centre_B, X_BS).q, law.middle, law.half_range);
+  return terms.energy.dot(law.coefficients.head<kLaw>().transpose());
 }
 
 std::vector<std::string> find_unexplained(const PoseErrors& errors) {

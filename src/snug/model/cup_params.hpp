@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "snug/core/field.hpp"
+#include "snug/model/cup_law.hpp"
 
 namespace snug::model {
 
@@ -123,7 +124,8 @@ struct ReleaseParams {
 /// hold_length along Ez. The spring acts between S1 (fixed to S) and S2 (fixed to E), both centre_from_lip before the
 /// lip when undeformed: p_SS1 = (0, 0, -centre_from_lip), p_ES2 = (0, 0, hold_length - centre_from_lip).
 struct CupParams {
-  CupElasticity stiffness{2500.0, 6000.0, 5.0, 3.0, 0.0};
+  CupElasticity stiffness{2500.0, 6000.0, 5.0, 3.0, 0.0};  ///< where `law` is used: the law's, undeformed
+  CupLaw law;
   CupElasticity damping{10.0, 15.0, 0.04, 0.025, 0.0};
   double hold_length = 0.050;          ///< m, E to S under vacuum
   double free_length = 0.072;          ///< m, E to S without vacuum
@@ -144,6 +146,7 @@ struct CupParams {
   template <class Archive>
   void fields(Archive& a) {
     a("stiffness", stiffness);
+    a("law", law);
     a("damping", damping);
     a("hold_length", hold_length, Range::Positive);
     a("free_length", free_length, Range::Positive);
@@ -161,5 +164,11 @@ struct CupParams {
   }
   bool operator==(const CupParams&) const = default;
 };
+
+void scale(CupElasticity& elasticity, double factor);
+/// The stiffness, and that of the law.
+void scale_stiffness(CupParams& cup, double factor);
+/// The law's stiffness where nothing deforms it.
+[[nodiscard]] CupElasticity undeformed_stiffness(const CupLaw& law);
 
 }  // namespace snug::model

@@ -31,12 +31,6 @@ double manifold_vacuum(const SupplyParams& supply, double opening) {
   return std::min(dead_end, root * root);
 }
 
-void scale(CupElasticity& elasticity, double factor) {
-  for (double* part :
-       {&elasticity.lateral, &elasticity.axial, &elasticity.bend, &elasticity.torsion, &elasticity.coupling})
-    *part *= factor;
-}
-
 void add(const CupElasticity& one, CupElasticity& sum) {
   sum.lateral += one.lateral;
   sum.axial += one.axial;
@@ -107,6 +101,7 @@ CupParams equivalent_cup(const GripperParams& gripper) {
   const double count = static_cast<double>(gripper.cups.size());
   CupParams all = gripper.cups.front().cup;
   all.stiffness = together(gripper, &CupParams::stiffness);
+  all.law = {};
   all.damping = together(gripper, &CupParams::damping);
   all.hold_length = all.free_length = all.vacuum.bellows_area = all.vacuum.hose_volume = 0.0;
   double square = 0.0;
@@ -139,7 +134,7 @@ Vector3 footprint(const GripperParams& gripper) {
 void vary_cups(double stiffness_factor, double damping_factor, double longer, std::optional<GripperParams>& gripper) {
   if (!gripper) return;
   for (MountedCup& cup : gripper->cups) {
-    scale(cup.cup.stiffness, stiffness_factor);
+    scale_stiffness(cup.cup, stiffness_factor);
     scale(cup.cup.damping, damping_factor);
     cup.cup.hold_length += longer;
     cup.cup.free_length += longer;

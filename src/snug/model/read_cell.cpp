@@ -64,6 +64,30 @@ void check_elasticity(const Value& at, const CupElasticity& e, const std::string
           may_be_zero ? what + " with lateral * bend >= coupling^2" : what + " > 0 with lateral * bend > coupling^2");
 }
 
+/// Refuses a law by which the cup would give way across by itself somewhere; sets the stiffness that planning uses.
+void check_cup_law(const Value& at, const std::optional<Value>& stiffness, CupParams& cup) {
+  const CupLaw& law = cup.law;
+  if (!law.is_used()) at.fail("half_range " + to_text(law.half_range), "half_range in metres, above 0");
+  if (std::max(law.half_range, std::abs(law.middle)) > 1.0)
+    at.fail("half_range " + to_text(law.half_range) + ", middle " + to_text(law.middle), "metres, below 1");
+  if (stiffness) stiffness->fail("stiffness beside law", "one of the two");
+  constexpr int kSamples = 30;  // of the measured range, and as many up to where stiffnesses end beyond it
+  for (int i = -2 * kSamples; i <= 2 * kSamples; ++i) {
+    const double u = static_cast<double>(i) / kSamples, z = law.middle + u * law.half_range;
+    const double lateral = law.lateral(z).value, bend = law.bend(z).value, torsion = law.torsion(z).value;
+    const double coupling = law.coupling(z).value;
+    if (!(lateral > 0.0 && bend > 0.0 && torsion > 0.0 && lateral * bend > coupling * coupling))
+      at.fail("at u = " + to_text(u) + " lateral " + to_text(lateral) + ", bend " + to_text(bend) + ", torsion " +
+                  to_text(torsion) + ", coupling " + to_text(coupling),
+              "stiffness > 0 with lateral * bend > coupling^2 for u from -2 to 2");
+  }
+  for (const double u : {-1.0, 1.0}) {
+    const double slope = law.axial(law.middle + u * law.half_range).curvature;
+    if (!(slope > 0.0)) at.fail("axial stiffness " + to_text(slope) + " N/m at u = " + to_text(u), "above 0 at both ends");
+  }
+  cup.stiffness = undeformed_stiffness(law);
+}
+
 }  // namespace
 
 void ScenarioReader::read_parcel_type(const Value& value) {
@@ -180,7 +204,9 @@ void ScenarioReader::read_tool(const Value& value) {
 }
 
 void ScenarioReader::read_cup(const Value& value, CupParams& cup) const {
-  read_fields(value, "cup", cup);
+  const MapReader map = value.map("cup", field_keys<CupParams>());
+  read_fields(map, cup);
+  if (const auto law = map.find("law")) check_cup_law(*law, map.find("stiffness"), cup);
   check_elasticity(value, cup.stiffness, "stiffness", false);
   check_elasticity(value, cup.damping, "damping", true);
   if (!(cup.hold_length <= cup.free_length))
