@@ -34,7 +34,8 @@ LawResponse law_response(const model::CupLaw& law, const Pose& H) {
   const double x = q[0], y = q[1], z = q[2], a = q[3], b = q[4], c = q[5];
   const model::Curve axial = law.axial(z), lateral = law.lateral(z), bend = law.bend(z), coupling = law.coupling(z);
   const model::Curve torsion = law.torsion(z);
-  const double shifted = 0.5 * (x * x + y * y), bent = 0.5 * (a * a + b * b), both = x * b - y * a, turned = 0.5 * c * c;
+  const double shifted = 0.5 * (x * x + y * y), bent = 0.5 * (a * a + b * b), both = x * b - y * a,
+               turned = 0.5 * c * c;
   const auto sum = [&](double of_axial, double model::Curve::*part) {
     return of_axial + lateral.*part * shifted + bend.*part * bent + coupling.*part * both + torsion.*part * turned;
   };

@@ -17,7 +17,8 @@ struct LawTerms {
 };
 [[nodiscard]] LawTerms law_terms(const Vector6& q, double middle, double half_range);
 
-/// Of the spring: energy, J; wrench on the package in S1 about its origin; its derivative by the body twist of S1 in S2.
+/// Of the spring: energy, J; wrench on the package in S1 about its origin; its derivative by the body twist of S1 in
+/// S2.
 struct LawResponse {
   double energy = 0.0;
   Vector6 wrench;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "snug/core/input_error.hpp"
@@ -21,6 +22,12 @@ std::string numbers_text(const double* values, Eigen::Index count) {
   for (Eigen::Index i = 0; i < count; ++i) text += fmt::format("{}{:.7g}", i > 0 ? ", " : "", values[i]);
   return text + "]";
 }
+
+/// Each field as a line.
+struct KeyWriter {
+  std::string& text;
+  void operator()(const char* key, double value, Range) const { text += fmt::format("    {}: {:.7g}\n", key, value); }
+};
 
 std::vector<double> law_numbers(const YAML::Node& parent, const std::string& key, std::size_t count,
                                 const std::string& name) {
@@ -73,6 +80,7 @@ std::string format_pose_law(const PoseFit& fit, const std::string& note) {
   std::string text = "# " + note + "\nlaw:\n";
   text += fmt::format("  centre: {}  # m\n", numbers_text(law.centre_B.data(), 3));
   text += fmt::format("  reference: {}  # m\n", numbers_text(law.reference_B.data(), 3));
+  text += fmt::format("  rest: {:.7g}  # m, along z\n", law.rest);
   text += fmt::format("  middle: {:.7g}  # m\n  half_range: {:.7g}  # m\n", law.middle, law.half_range);
   text += "  coefficients:\n";
   for (const Parameter& parameter : fit.parameters)
@@ -85,6 +93,11 @@ std::string format_pose_law(const PoseFit& fit, const std::string& note) {
                         std::vector<std::string>{"fx", "fy", "fz", "tx", "ty", "tz"}[static_cast<std::size_t>(row)],
                         numbers_text(line.data(), 7));
   }
+  text += "cup:  # for scenarios, undeformed in the least compressed pose (docs/scenario.md, cup.law)\n";
+  text += fmt::format("  centre_from_lip: {:.7g}  # m\n  law:\n", std::max(0.0, -law.centre_B.z()));
+  model::CupLaw cup_law = cup_law_of(law);
+  KeyWriter writer{text};
+  cup_law.fields(writer);
   return text;
 }
 
@@ -102,6 +115,7 @@ PotentialLaw load_pose_law(const std::filesystem::path& path) {
   PotentialLaw law;
   law.centre_B = Vector3(law_numbers(node, "centre", 3, name).data());
   law.reference_B = Vector3(law_numbers(node, "reference", 3, name).data());
+  law.rest = law_numbers(node, "rest", 1, name)[0];
   law.middle = law_numbers(node, "middle", 1, name)[0];
   law.half_range = law_numbers(node, "half_range", 1, name)[0];
   if (!(law.half_range > 0.0)) throw InputError(name, "law.half_range", "0 or less", "a number above 0");

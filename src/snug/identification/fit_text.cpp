@@ -40,6 +40,10 @@ std::string pose_json(const std::vector<Parameter>& parameters, const PoseErrors
   ordered_json json = {{"parameters", internal::describe_parameters(parameters)},
                        {"normalised_error", errors.normalised},
                        {"linear_error", errors.linear},
+                       {"zero_drifts", errors.zero_drifts},
+                       {"normalised_error_constant_zero", errors.constant_zero},
+                       {"normalised_error_drifting_zero", errors.drifting_zero},
+                       {"linear_error_drifting_zero", errors.linear_drifting},
                        {"components", ordered_json::object()},
                        {"is_explained", find_unexplained(errors).empty()},
                        {"verdict", verdict_of(errors)}};
@@ -93,8 +97,14 @@ std::string format_json(const PoseErrors& errors) { return pose_json({}, errors)
 std::string format_json(const PoseFit& fit) { return pose_json(fit.parameters, fit.held_back); }
 
 std::string format_text(const PoseErrors& errors, const std::string& about) {
-  std::string text = fmt::sprintf("%s: %.3f standard deviations of a component rms; linear fit %.3f\n ", about,
-                                  errors.normalised, errors.linear);
+  std::string text = fmt::sprintf(
+      "%s, standard deviations of a component, rms:\n"
+      "                  constant zero  drifting zero of the sensor\n"
+      "  this law        %13.3f  %13.3f\n"
+      "  linear fit      %13.3f  %13.3f\n"
+      "components with a %s zero:\n ",
+      about, errors.constant_zero, errors.drifting_zero, errors.linear, errors.linear_drifting,
+      errors.zero_drifts ? "drifting" : "constant");
   Eigen::Index i = 0;
   for (const char* name : kWrenchNames) text += fmt::sprintf(" %s %.3f", name, errors.components[i++]);
   return text + "\n" + verdict_of(errors) + "\n";

@@ -58,8 +58,8 @@ Powers energy_powers(double u) {
 
 Curve CupLaw::axial(double z) const {
   const auto at = [this](double height) {
-    Curve curve = by_z(energy_powers((height - middle) / half_range), {0.0, axial_1, axial_2, axial_3, axial_4, axial_5},
-                       half_range);
+    Curve curve = by_z(energy_powers((height - middle) / half_range),
+                       {0.0, axial_1, axial_2, axial_3, axial_4, axial_5}, half_range);
     curve.value *= half_range;
     curve.slope *= half_range;
     curve.curvature *= half_range;

@@ -20,16 +20,16 @@ using Powers = std::array<Curve, kLawPowers>;
 /// says nothing of what is far outside.
 [[nodiscard]] Powers stiffness_powers(double u);
 
-/// Integrals over u from 0 of 1, u, u^2 .. (value), and those themselves (slope): beyond -1 and 1 they go on as straight
-/// lines.
+/// Integrals over u from 0 of 1, u, u^2 .. (value), and those themselves (slope): beyond -1 and 1 they go on as
+/// straight lines.
 [[nodiscard]] Powers energy_powers(double u);
 
 /// Law (f) of docs/theory/cup.md, section 8, about the centre of the cup (CupParams::centre_from_lip); used in place of
 /// CupParams::stiffness where half_range is above 0. u = (z - middle) / half_range, z the growth of the cup along its
 /// axis: negative where it is compressed. Polynomials of u; the axial force is zero at z = 0, so it has no constant.
 struct CupLaw {
-  double half_range = 0.0;  ///< m
-  double middle = 0.0;      ///< m
+  double half_range = 0.0;                                                           ///< m
+  double middle = 0.0;                                                               ///< m
   double axial_1 = 0.0, axial_2 = 0.0, axial_3 = 0.0, axial_4 = 0.0, axial_5 = 0.0;  ///< N
   double lateral_0 = 0.0, lateral_1 = 0.0, lateral_2 = 0.0;                          ///< N/m
   double bend_0 = 0.0, bend_1 = 0.0, bend_2 = 0.0;                                   ///< Nm/rad

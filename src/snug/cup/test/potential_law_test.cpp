@@ -5,11 +5,12 @@
 #include "snug/core/rng.hpp"
 #include "snug/cup/law.hpp"
 #include "snug/cup/suction_cup.hpp"
+#include "snug/cup/test/vectors.hpp"
 
 namespace snug::cup {
 namespace {
 
-model::CupLaw some_law() {
+model::CupLaw compressible() {
   model::CupLaw law;
   law.half_range = 0.007, law.middle = -0.009;
   law.axial_1 = 20.0, law.axial_2 = -3.0, law.axial_3 = 2.0, law.axial_4 = 1.0, law.axial_5 = 0.5;
@@ -20,26 +21,18 @@ model::CupLaw some_law() {
   return law;
 }
 
-Vector3 random_vector(Rng& rng, double size) {
-  return {rng.uniform(-size, size), rng.uniform(-size, size), rng.uniform(-size, size)};
-}
-
-Pose random_pose(Rng& rng) { return {exp_rotation(random_vector(rng, 0.5)), random_vector(rng, 0.02)}; }
-
-Pose moved(const Pose& H, const Vector6& nu) {
-  return {H.R * exp_rotation(nu.tail<3>()), H.p + H.R * nu.head<3>()};
-}
+Pose moved_by(const Pose& H, const Vector6& nu) { return {H.R * exp_rotation(nu.tail<3>()), H.p + H.R * nu.head<3>()}; }
 
 TEST(CupPotential, WrenchIsMinusTheGradientOfTheEnergyAndTheTangentItsDerivative) {
   Rng rng(7);
-  const model::CupLaw law = some_law();
+  const model::CupLaw law = compressible();
   const double h = 1e-6;
   for (int i = 0; i < 200; ++i) {
-    const Pose H = random_pose(rng);
+    const Pose H = test::random_pose(rng, 0.5, 0.02);
     const LawResponse at = law_response(law, H);
     for (int j = 0; j < 6; ++j) {
       const Vector6 step = h * Vector6::Unit(j);
-      const LawResponse after = law_response(law, moved(H, step)), before = law_response(law, moved(H, -step));
+      const LawResponse after = law_response(law, moved_by(H, step)), before = law_response(law, moved_by(H, -step));
       EXPECT_NEAR(at.wrench[j], -(after.energy - before.energy) / (2.0 * h), 2e-6 * (1.0 + at.wrench.norm()));
       const Vector6 by_step = (after.wrench - before.wrench) / (2.0 * h);
       EXPECT_LE((by_step - at.tangent.col(j)).norm(), 1e-4 * at.tangent.norm());
@@ -54,7 +47,7 @@ TEST(CupPotential, WithConstantStiffnessIsTheLawOfFiveNumbers) {
   law.lateral_0 = 2500.0, law.bend_0 = 5.0, law.torsion_0 = 3.0, law.coupling_0 = 20.0;
   const Matrix6 K = as_matrix({2500.0, 6000.0, 5.0, 3.0, 20.0});
   for (int i = 0; i < 100; ++i) {
-    const Pose H = random_pose(rng);
+    const Pose H = test::random_pose(rng, 0.5, 0.02);
     const LawResponse at = law_response(law, H);
     EXPECT_NEAR(at.energy, potential(H, K), 1e-12 * (1.0 + at.energy));
     EXPECT_LE((at.wrench - spring_wrench(H, K)).norm(), 1e-11 * (1.0 + at.wrench.norm()));
@@ -64,7 +57,7 @@ TEST(CupPotential, WithConstantStiffnessIsTheLawOfFiveNumbers) {
 
 TEST(CupPotential, TermsTimesCoefficientsAreTheResponse) {
   Rng rng(9);
-  const model::CupLaw law = some_law();
+  const model::CupLaw law = compressible();
   Eigen::Matrix<double, kLawTerms, 1> coefficients;
   coefficients << 0.0, law.axial_1, law.axial_2, law.axial_3, law.axial_4, law.axial_5, law.lateral_0, law.lateral_1,
       law.lateral_2, law.bend_0, law.bend_1, law.bend_2, law.coupling_0, law.coupling_1, law.coupling_2, law.torsion_0,
@@ -72,7 +65,7 @@ TEST(CupPotential, TermsTimesCoefficientsAreTheResponse) {
   const LawTerms rest = law_terms(Vector6::Zero(), law.middle, law.half_range);
   coefficients[0] = -rest.gradient.row(2).dot(coefficients);
   for (int i = 0; i < 100; ++i) {
-    const Pose H = random_pose(rng);
+    const Pose H = test::random_pose(rng, 0.5, 0.02);
     const LawTerms terms = law_terms(0.5 * deformation(H), law.middle, law.half_range);
     const LawResponse at = law_response(law, H);
     EXPECT_NEAR((terms.energy - rest.energy).dot(coefficients), at.energy, 1e-12 * (1.0 + std::abs(at.energy)));
@@ -81,16 +74,17 @@ TEST(CupPotential, TermsTimesCoefficientsAreTheResponse) {
 
 TEST(CupPotential, LooksTheSameFromAllSides) {
   Rng rng(10);
-  const model::CupLaw law = some_law();
+  const model::CupLaw law = compressible();
   for (int i = 0; i < 50; ++i) {
-    const Pose H = random_pose(rng), turn{exp_rotation(Vector3(0.0, 0.0, rng.uniform(-3.0, 3.0))), Vector3::Zero()};
+    const Pose H = test::random_pose(rng, 0.5, 0.02),
+               turn{exp_rotation(Vector3(0.0, 0.0, rng.uniform(-3.0, 3.0))), Vector3::Zero()};
     EXPECT_NEAR(law_response(law, turn * H * turn.inverse()).energy, law_response(law, H).energy, 1e-12);
   }
 }
 
 TEST(CupPotential, ACupOfALawPushesByIt) {
   model::CupParams params;
-  params.law = some_law();
+  params.law = compressible();
   physics::ElementQuery query;
   query.X_WB.p.z() = params.hold_length + 0.004;  // the face, drawn away by 4 mm
   const physics::ElementResponse pulled = SuctionCup(params, Pose{}).evaluate(query);

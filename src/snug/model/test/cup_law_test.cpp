@@ -59,9 +59,7 @@ TEST(CupLaw, ScaledIsEveryForceTimesTheFactor) {
   }
 }
 
-std::string scene_with(const std::string& cup) {
-  return "name: s\nduration: 1.0\ncup:\n" + cup;
-}
+std::string scene_with(const std::string& cup) { return "name: s\nduration: 1.0\ncup:\n" + cup; }
 const std::string kLaw =
     "  law: {half_range: 0.007, middle: -0.007, axial_1: 20, lateral_0: 1200, bend_0: 0.8, torsion_0: 0.2}\n";
 
@@ -86,8 +84,11 @@ TEST(CupLaw, ComplaintsNameWhatIsWrong) {
   EXPECT_NE(complaint_about("  law: {axial_1: 20}\n").find("half_range"), std::string::npos);
   EXPECT_NE(complaint_about("  stiffness: {lateral: 2}\n" + kLaw).find("stiffness beside law"), std::string::npos);
   const std::string buckles =
-      "  law: {half_range: 0.007, axial_1: 20, lateral_0: 1200, bend_0: 0.8, torsion_0: 0.2, coupling_1: 20}\n";
+      "  law: {half_range: 0.007, axial_1: 20, lateral_0: 1200, bend_0: 0.8, torsion_0: 0.2, coupling_0: 40}\n";
   EXPECT_NE(complaint_about(buckles).find("coupling^2"), std::string::npos);
+  const std::string gives_way =
+      "  law: {half_range: 0.007, axial_1: 20, lateral_0: 1200, lateral_1: 900, bend_0: 0.8, torsion_0: 0.2}\n";
+  EXPECT_NE(complaint_about(gives_way).find("for u from -2 to 2"), std::string::npos);
   const std::string falls =
       "  law: {half_range: 0.007, axial_1: 20, axial_3: -20, lateral_0: 1200, bend_0: 0.8, torsion_0: 0.2}\n";
   EXPECT_NE(complaint_about(falls).find("axial stiffness"), std::string::npos);
