@@ -5,7 +5,7 @@ namespace snug::identification::internal {
 namespace {
 
 // Of spacings from 6 to 200 rows and weights from 0.01 to 3, those that predict held-back poses of another make's cup
-// best (docs/decisions/0118); the error changes by 4 % between 6 and 25 rows.
+// best (docs/decisions/0123); the error changes by 4 % between 6 and 25 rows.
 constexpr double kRowsOfAKnot = 6.0;
 constexpr double kSmoothness = 3.0;
 
