@@ -11,7 +11,7 @@ configure-build = cmake --preset $(1) $(2) && cmake --build --preset $(1) -j $(J
 run-tests = ctest --preset $(1) -j $(JOBS)
 
 .PHONY: help setup setup-test setup-program setup-python setup-lint setup-peers setup-package setup-fuzz setup-docs build demo test acceptance install python wheel package release reproducible check \
-  format-check clang headers fix san san-fast tsan tidy cover fuzz same-bytes attack bench bench-peers figures pictures docs clean
+  format-check clang headers fix san san-fast tsan tidy cover fuzz same-bytes attack bench bench-peers figures pictures curves docs clean
 
 help: ## list the verbs
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
@@ -120,6 +120,9 @@ figures: build ## make the numbers that README and the documents state, and writ
 
 pictures: build setup-test ## draw the pictures of the documents that show runs and pages, some minutes; NAME="report kitchen"
 	@python3 tools/pictures.py $(NAME)
+
+curves: ## draw the pictures of docs/theory that show computed curves, some seconds; NAME="cup-rest"
+	@python3 tools/theory_pictures.py $(NAME)
 
 docs: setup-docs build ## check every link of the documents, build the documentation site with every verb's options: build/site/index.html; after make demo with a gallery
 	@python3 tools/check_docs.py . && python3 tools/build_site.py build/site
