@@ -158,9 +158,11 @@ struct Compared {
   }
 };
 
-/// Pattern search of the centre and the reference point from a centre at this height: in every third pose.
+/// Pattern search of the centre and the reference point, in every third pose. Coupling stands for the centre's height,
+/// so one beyond the lip is taken only where it is clearly better.
 void find_frames(const CupPoses& poses, const Vector6& deviations, bool drifts, PotentialLaw& law) {
   constexpr double kFirstStep = 0.016, kLastStep = 2e-4;  // m
+  constexpr double kClearly = 0.98;                       // of the squares
   const SensorZero zero = zero_of(poses, drifts, [](std::size_t i) { return i % 3 == 0; });
   const auto left_by = [&](double height, PotentialLaw& one) {
     const auto coordinate = [&one](int i) -> double& { return i < 3 ? one.centre_B[i] : one.reference_B[i - 3]; };
@@ -189,7 +191,7 @@ void find_frames(const CupPoses& poses, const Vector6& deviations, bool drifts, 
   };
   PotentialLaw below = law, above = law;
   const double squares = left_by(-0.02, below);
-  law = left_by(0.015, above) < squares ? above : below;
+  law = left_by(0.015, above) < kClearly * squares ? above : below;
 }
 
 /// Each fifth pose from the others; the coefficients of the five fits are the columns of `parts`.

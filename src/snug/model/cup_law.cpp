@@ -7,7 +7,7 @@
 namespace snug::model {
 namespace {
 
-constexpr double kBeyond = 0.5;  // of half the measured range: how far s(u) goes on outside it
+constexpr double kBeyond = 0.25;  // of half the measured range: how far s(u) goes on outside it
 
 /// s(u), with its derivatives: two times continuously differentiable, and needs no more than a root.
 Curve held_in_range(double u) {

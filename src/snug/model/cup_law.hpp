@@ -16,7 +16,7 @@ struct Curve {
 inline constexpr std::size_t kLawPowers = 6;
 using Powers = std::array<Curve, kLawPowers>;
 
-/// 1, s, s^2 .. by u; s(u) is u between -1 and 1 and ends smoothly at 1.5 and -1.5 beyond: what was measured between
+/// 1, s, s^2 .. by u; s(u) is u between -1 and 1 and ends smoothly at 1.25 and -1.25 beyond: what was measured between
 /// says nothing of what is far outside.
 [[nodiscard]] Powers stiffness_powers(double u);
 

@@ -17,9 +17,9 @@ using internal::BlockList;
 using internal::LoadBlock;
 using internal::Size3;
 
-constexpr std::size_t kMaxBlocks = 10000;
-constexpr double kMinFill = 0.98;
-constexpr int kLongestEdge = 100000;  // the volume of a container stays below 2^63
+constexpr std::size_t kMaxBlocks = 10000;  // limit of memory
+constexpr double kMinFill = 0.98;          // of a block by its boxes: as in VCS (below)
+constexpr int kLongestEdge = 100000;       // the volume of a container stays below 2^63
 constexpr int kMostTypes = 1000;
 constexpr int kMostBoxes = 5000;  // of one type
 /// Blocks looked at in one second, with all that a search does around them: measured on the reference machine.

@@ -27,8 +27,8 @@ using internal::StandingItem;
 
 constexpr int kMostAcross = 24;          ///< points along the longer edge
 constexpr int kMostAcrossSearched = 10;  ///< where each takes a search
-constexpr std::size_t kMostPicks = 64;
-constexpr double kSamePick = 0.005;  ///< m: picks so near to each other are one
+constexpr std::size_t kMostPicks = 64;   ///< limit of time: each is tried at every point
+constexpr double kSamePick = 0.005;      ///< m: picks so near to each other are one
 
 ReachVerdict verdict_of(CheckKind kind) {
   switch (kind) {

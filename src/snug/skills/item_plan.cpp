@@ -144,7 +144,9 @@ double still_hold_factor(const model::Scenario& scenario, const PlannedBox& box)
 }
 
 double pace_of(const model::Scenario& scenario, const PlannedBox& box, const Vector3& up_P) {
-  constexpr double kMargin = 1.05, kLeast = 0.3, kStep = 0.05;
+  constexpr double kMargin = 1.05;    ///< chosen, over what a rehearsal asks for
+  constexpr double kLeast = 0.3;      ///< chosen
+  constexpr double kStep = 0.05;      ///< of the search
   constexpr double kOvershoot = 2.0;  ///< of the lift: its smoothing is shorter than a heavy box bounces; 1.9 with 6 kg
   const SpatialInertia box_S = cup::box_below_lip(scenario.cup, box.inertia, box.size, up_P);
   const double gravity = scenario.gravity.norm(), asked = kMargin * scenario.place_limits.hold_factor;

@@ -72,7 +72,7 @@ std::vector<plant::Event> RecordedPlant::advance() {
   move_to(now);
   for (const plant::Event& event : events) take(event, now);
   const double tick = simulation_.scenario().controller.tick;
-  constexpr double kSameTick = 0.01;
+  constexpr double kSameTick = 0.01;  ///< of a tick: rounding of times that add up
   if (now.time >= last_frame_ + (1.0 - kSameTick) * tick) add_frame(now);
   return events;
 }
