@@ -60,12 +60,11 @@ void advance_release(const model::CupParams& params, bool blows, double length, 
   state.release_time += dt;
   if (!moves) return;
   state.pressure_gauge = std::max(state.pressure_gauge, release.pressure_gauge_start);
-  if (!blows) {
-    state.pressure_gauge *= std::exp(-dt * open / vacuum.vent_time);
-    return;
-  }
-  const double risen = state.pressure_gauge + vacuum.ambient_pressure_abs * open * release.blow_flow * dt / volume;
-  state.pressure_gauge = std::min(risen, std::max(state.pressure_gauge, vacuum.pressure_gauge_blow));
+  // The open valve lets in what lies around the cup, so the pressure fades; blow-off adds its flow. A mean opening
+  // makes the step exact for this volume.
+  const double blown = blows ? vacuum.ambient_pressure_abs * release.blow_flow * vacuum.vent_time / volume : 0.0;
+  const double next = blown + (state.pressure_gauge - blown) * std::exp(-dt * open / vacuum.vent_time);
+  state.pressure_gauge = std::min(next, std::max(state.pressure_gauge, vacuum.pressure_gauge_blow));
 }
 
 bool peel_lip(const model::CupParams& params, const Wrench& F_S, double dt, CupState& state) {

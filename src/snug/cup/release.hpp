@@ -5,7 +5,7 @@
 
 namespace snug::cup {
 
-/// The bellows along its axis while it is let go (docs/theory/cup.md, section 6): it pulls the package with
+/// The bellows along its axis while it is let go (docs/theory/cup-release.md): it pulls the package with
 /// stiffness * (length - unloaded_length), the weaker of what its shut folds and what vacuum and open bellows give.
 struct Bellows {
   double stiffness = 0.0;        ///< N/m
@@ -21,8 +21,8 @@ struct Bellows {
                                        const Pose& X_PS);
 
 /// One step of the gas: the bellows changes to this length and keeps its gas (constant temperature), the valve opens
-/// from valve_delay on within valve_time, and air comes in. With blow-off blow_flow of it whatever the pressure, up to
-/// pressure_gauge_blow; else the pressure fades with vent_time.
+/// from valve_delay on within valve_time, and the pressure fades with vent_time. With blow-off blow_flow comes in too,
+/// up to pressure_gauge_blow.
 void advance_release(const model::CupParams& params, bool blows, double length, double dt, CupState& state);
 
 /// One step of a lip whose vacuum is off: has it come off now? It has once what its contact lacks has acted for

@@ -19,8 +19,8 @@ namespace {
 using internal::Drop;
 using model::CupParams;
 
-// Errors and starts were chosen on the 76 recordings of docs/decisions/0067 and 0068; the latter has what priors of
-// other widths did.
+// Errors and starts were chosen on the 76 recordings of docs/decisions/0067, 0068 and 0118; the latter two have
+// what priors of other widths did.
 constexpr double kReleaseHeightError = 1e-3;    // m, of a sample of a recording's 50, which stray together
 constexpr double kReleaseLengthError = 0.3e-3;  // m, of a cup's length at rest
 constexpr double kReleaseOpeningError = 3e-3;   // s: the source smooths over 36 ms

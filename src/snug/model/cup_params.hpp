@@ -88,20 +88,20 @@ struct HoldLimits {
   bool operator==(const HoldLimits&) const = default;
 };
 
-/// How a cup lets go, as recorded releases show it (docs/theory/cup.md, section 6). Used with vacuum phases where
+/// How a cup lets go, as recorded releases show it (docs/theory/cup-release.md). Used with vacuum phases where
 /// `growth` is above 0 and the blow-off goes on as the vacuum goes off, in place of release_push and of what CupParams
-/// says of the axial direction without vacuum. Defaults: rounded from releases of seven masses (docs/decisions/0068).
+/// says of the axial direction without vacuum. Defaults: rounded from releases of seven masses (docs/decisions/0118).
 struct ReleaseParams {
   double growth = 0.0;                    ///< m, length of the free open bellows less that of the shut one
   double shut_stiffness = 7000.0;         ///< N/m, axial, of folds that the vacuum presses together
-  double open_stiffness = 900.0;          ///< N/m, axial, of the open bellows
-  double damping = 16.0;                  ///< Ns/m, axial, shut and open
-  double pressure_gauge_start = -1.60e4;  ///< Pa, once the valve moves; what is deeper is let in at once
-  double volume = 2.5e-4;                 ///< m^3, behind the bellows
-  double valve_delay = 0.004;             ///< s, from the switch until the valve moves
-  double valve_time = 0.040;              ///< s, from then until it is open
-  double blow_flow = 2.0e-3;              ///< m^3/s at ambient pressure, of the blow-off through the open valve
-  double peel_impulse = 0.13;             ///< Ns, of what the lip's contact lacks, until the lip has come off
+  double open_stiffness = 700.0;          ///< N/m, axial, of the open bellows
+  double damping = 11.0;                  ///< Ns/m, axial, shut and open
+  double pressure_gauge_start = -1.40e4;  ///< Pa, once the valve moves; what is deeper is let in at once
+  double volume = 0.8e-4;                 ///< m^3, behind the bellows
+  double valve_delay = 0.0075;            ///< s, from the switch until the valve moves
+  double valve_time = 0.060;              ///< s, from then until it is open
+  double blow_flow = 1.7e-3;              ///< m^3/s at ambient pressure, of the blow-off through the open valve
+  double peel_impulse = 0.08;             ///< Ns, of what the lip's contact lacks, until the lip has come off
 
   [[nodiscard]] bool is_used() const { return growth > 0.0; }
   template <class Archive>

@@ -22,7 +22,7 @@ CupState releasing(double length) {
   return state;
 }
 
-TEST(ReleaseGas, RisesByTheFlowThroughTheOpeningValve) {
+TEST(ReleaseGas, RisesByVentAndFlowThroughTheOpeningValve) {
   const model::CupParams params = released();
   const model::ReleaseParams& release = params.release;
   for (const double dt : {0.25e-3, 1e-3, 4e-3}) {
@@ -32,15 +32,28 @@ TEST(ReleaseGas, RisesByTheFlowThroughTheOpeningValve) {
       advance_release(params, true, 0.05, dt, state);
       const double t = i * dt - release.valve_delay;
       if (std::abs(t) < 1e-9) continue;  // rounding tells whether the valve moves by then
-      // flow * t^2 / (2 valve_time) of ambient air has come in: the mean opening of a step is exact.
-      const double air = params.vacuum.ambient_pressure_abs * release.blow_flow * t * t / (2.0 * release.valve_time);
-      const double expected =
-          t < 0.0 ? params.vacuum.pressure_gauge_hold
-                  : std::min(params.vacuum.pressure_gauge_blow, release.pressure_gauge_start + air / volume);
+      // The valve has been open for t^2 / (2 valve_time): the mean opening of a step is exact. The pressure tends to
+      // what the flow keeps up against the vent.
+      const double open = t * t / (2.0 * release.valve_time), vent = params.vacuum.vent_time;
+      const double kept = params.vacuum.ambient_pressure_abs * release.blow_flow * vent / volume;
+      const double expected = t < 0.0 ? params.vacuum.pressure_gauge_hold
+                                      : std::min(params.vacuum.pressure_gauge_blow,
+                                                 kept + (release.pressure_gauge_start - kept) * std::exp(-open / vent));
       EXPECT_NEAR(state.pressure_gauge, expected, 1e-6) << t;
     }
     for (int i = 0; i < 4000; ++i) advance_release(params, true, 0.05, dt, state);
     EXPECT_EQ(state.pressure_gauge, params.vacuum.pressure_gauge_blow);
+  }
+}
+
+TEST(ReleaseGas, BlowOffWithoutFlowIsNoBlowOff) {
+  model::CupParams params = released();
+  params.release.blow_flow = 0.0;
+  CupState blown = releasing(0.05), vented = releasing(0.05);
+  for (int i = 0; i < 60; ++i) {
+    advance_release(params, true, 0.05, 1e-3, blown);
+    advance_release(params, false, 0.05, 1e-3, vented);
+    EXPECT_EQ(blown.pressure_gauge, vented.pressure_gauge) << i;
   }
 }
 
