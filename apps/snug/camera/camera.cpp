@@ -160,7 +160,7 @@ Examples:
   snug camera run.h5 --time 20 --camera tote --seed 3 --shot 2 -o frame.h5
   snug camera run.h5 --scenario scenarios/box-demonstrator.yaml -o frame.ply   # with the cameras of another scenario
 With --click ADDRESS, and a scenario instead of a recording, camera renders a cell that `snug serve` serves now: the camera of a simulated cell
-as a separate program (docs/camera.md).)";
+as a separate program (docs/camera-frames.md).)";
 
 }  // namespace
 

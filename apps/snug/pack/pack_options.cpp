@@ -33,7 +33,7 @@ Give simulate, check and export the same --items, --container and --pallet as th
 void add_frame_options(const Verb& verb, PackOptions& options) {
   verb.option("--frames", options.plant.frames, "DIR|COMMAND",
               "with --perception frames: a folder in which a frame appears at each look, or a command that writes one: "
-              "{frame} is its path without ending, {look} its number; no shell runs it (docs/camera.md)");
+              "{frame} is its path without ending, {look} its number; no shell runs it (docs/camera-frames.md)");
   verb.option("--frames-timeout", options.plant.frames_patience, "SECONDS", "how long a frame may take",
               within(0.01, 1e5));
   verb.option("--frames-camera", options.plant.frames_camera, "FILE",
@@ -59,7 +59,7 @@ void add_packing_options(const Verb& verb, PackOptions& options) {
   verb.option(
       "--perception", options.plant.perception, "HOW",
       "how boxes are seen: exact: their true poses and sizes; noisy: within 2 mm and 20 mrad; dead-reckoning: not at "
-      "all; camera: by the scenario's depth camera; frames: by your own camera, see --frames (docs/camera.md)",
+      "all; camera: by the scenario's depth camera; frames: by your own camera, see --frames (docs/camera-frames.md)",
       one_of({"exact", "noisy", "dead-reckoning", "camera", "frames"}));
   verb.option("--robot", options.robot, "NAME",
               "robot whose joints move the tool in the plant, such as ur10; none: the tool moves by itself (default: "

@@ -91,7 +91,7 @@ constexpr const char* kPerceiveHelp =
 the errors of its camera.
 FRAME is a PNG (16-bit grey), a PLY or a PCD (text or binary, organised or not) or an HDF5 of `snug camera`. Files of `snug camera` say
 where the camera is. For others a file beside the frame says it (NAME.json, .yaml or .yml, else camera.json, .yaml or .yml in its folder),
-or --camera-file; what they leave out is the scenario's camera, its intrinsics replaced by --intrinsics (docs/camera.md).
+or --camera-file; what they leave out is the scenario's camera, its intrinsics replaced by --intrinsics (docs/camera-frames.md).
 EXPECT is a list of placements as `snug pack --plan` writes it: where each box is believed to be in the container. perceive searches
 boxes that are elsewhere; leave out boxes that are not in the container yet.
 Exit code 1: the frame itself cannot be used (too few points, or something stands in the view).

@@ -151,9 +151,10 @@ void add_served_time(const Verb& verb, ServeOptions& options) {
 }
 
 void add_served_ur(const Verb& verb, UrOptions& ur, const OptionRow& model) {
-  const OptionRow host = verb.option("--ur", ur.host, "ADDRESS",
-                                     "act as a controller of Universal Robots at this address instead: RTDE 30004, "
-                                     "dashboard 29999, primary 30001, secondary 30002, real-time 30003 (docs/ur.md)");
+  const OptionRow host =
+      verb.option("--ur", ur.host, "ADDRESS",
+                  "act as a controller of Universal Robots at this address instead: RTDE 30004, "
+                  "dashboard 29999, primary 30001, secondary 30002, real-time 30003 (docs/ur-served.md)");
   host.excludes({"--click", "--keys", "--async", "--batch", "--step-by-step", "--run-at-once", "--stop-after"});
   model.needs(host);
   verb.option("--ur-port-offset", ur.port_offset, "N", "number added to its five ports", whole(0, 35531)).needs(host);

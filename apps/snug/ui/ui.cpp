@@ -55,7 +55,7 @@ The folder holds plain files that all other verbs read and write: scenarios (.ya
 command with its output (.txt), its log (.jsonl), recording (.h5), program (.program.csv) and, while it runs,
 frames (.live).
 Ctrl-C ends the page and interrupts its runs. Only this machine can open the page, with the printed address and its
-token. docs/ui.md has the addresses for other programs.)";
+token. docs/ui-interface.md has the addresses for other programs.)";
 
 }  // namespace
 

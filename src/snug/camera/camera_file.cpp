@@ -134,7 +134,7 @@ class CameraReader {
              "fx, fy, ppx and ppy of the depth frame alone: of the colour camera where depth is aligned to it");
     const std::string_view nearest = find_nearest(key, known);
     refuse(node, printable(key, 60), "an unknown key",
-           nearest.empty() ? "keys of a camera (docs/camera.md)" : "'" + std::string(nearest) + "'");
+           nearest.empty() ? "keys of a camera (docs/camera-frames.md)" : "'" + std::string(nearest) + "'");
   }
 
   [[nodiscard]] std::string word(const YAML::Node& node, const char* key) const {

@@ -37,7 +37,7 @@ struct CameraFile {
   std::optional<bool> points_are_in_camera;
 };
 
-/// JSON or YAML: snug's own keys (docs/camera.md), a ROS `camera_info` (message or calibration file), Open3D's
+/// JSON or YAML: snug's own keys (docs/camera-frames.md), a ROS `camera_info` (message or calibration file), Open3D's
 /// intrinsics, RealSense's. Throws InputError with line and key for what cannot be, for lenses that are not rectified
 /// (a distortion that is not 0), and for keys that none of them has.
 [[nodiscard]] CameraFile load_camera_file(const std::filesystem::path& path);

@@ -97,7 +97,7 @@ struct ReachMap {
 /// InputError for a scenario without robot, tool or target container. The map does not depend on `threads`.
 [[nodiscard]] ReachMap make_reach_map(const model::Scenario& scenario, int threads, const CheckOptions& options = {});
 
-/// Keys: docs/ui.md, "Map of what is reached".
+/// Keys: docs/ui.md, "Reach map".
 [[nodiscard]] std::string format_json(const ReachMap& map);
 /// For people.
 [[nodiscard]] std::string format_table(const ReachMap& map);

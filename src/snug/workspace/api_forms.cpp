@@ -337,7 +337,7 @@ const std::vector<ApiForm>& api_forms() {
 
 std::string format_api_types() {
   std::string text =
-      "// Requests and answers of `snug ui` (docs/ui.md) as types.\n"
+      "// Requests and answers of `snug ui` (docs/ui-interface.md) as types.\n"
       "// Written by the test ApiForms.AreWhatThePageReads; the forms stand in src/snug/workspace/api_forms.cpp.\n";
   for (const ApiForm& form : api_forms()) {
     text += '\n';

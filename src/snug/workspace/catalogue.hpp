@@ -20,7 +20,7 @@ struct CatalogueContainer {
 };
 [[nodiscard]] const std::vector<CatalogueContainer>& container_catalogue();
 
-/// JSON: `containers` and `cups`, as docs/ui.md says.
+/// JSON: `containers` and `cups`, as docs/ui-interface.md says.
 [[nodiscard]] std::string format_catalogue();
 
 /// The cup of the catalogue that has this key ("40-1.5-foam"). Throws InputError for others.

@@ -168,7 +168,8 @@ T member(const Json& json, const char* key, T otherwise) {
   const bool is_right = std::is_same_v<T, std::string> ? found->is_string()
                         : std::is_same_v<T, double>    ? found->is_number()
                                                        : found->is_number_unsigned();
-  if (!is_right) throw InputError("request", key, printable(text_of(*found), 40), "a value of its type, docs/ui.md");
+  if (!is_right)
+    throw InputError("request", key, printable(text_of(*found), 40), "a value of its type, docs/ui-interface.md");
   return found->template get<T>();
 }
 
@@ -256,7 +257,7 @@ ApiAnswer Service::route(const ApiRequest& request) {
       if (one.name == name) return as_answer(template_of(one));
     }
   }
-  return refusal(404, "no such address: docs/ui.md lists them");
+  return refusal(404, "no such address: docs/ui-interface.md lists them");
 }
 
 ApiAnswer Service::answer_folder() {
@@ -494,7 +495,7 @@ ApiAnswer Service::answer_run(const ApiRequest& request, const std::string& name
     answer.policy = kReportPolicy;
     return answer;
   }
-  return refusal(404, "no such address: docs/ui.md lists them");
+  return refusal(404, "no such address: docs/ui-interface.md lists them");
 }
 
 ApiAnswer Service::start_runs(const std::string& body, bool starts) {

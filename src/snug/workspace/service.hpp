@@ -27,7 +27,7 @@ struct ServiceSettings {
   int runs_at_once = 1;
 };
 
-/// Addresses and answers: docs/ui.md.
+/// Addresses and answers: docs/ui-interface.md.
 class Service {
  public:
   /// Throws InputError where there is no folder.

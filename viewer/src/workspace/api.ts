@@ -1,4 +1,4 @@
-// Api: the addresses of `snug ui` (docs/ui.md) as functions, their answers as the types that the program writes (api_types.ts).
+// Api: the addresses of `snug ui` (docs/ui-interface.md) as functions, their answers as the types that the program writes (api_types.ts).
 
 import type {
   Catalogue, CellMove, CellScene, Checked, CupSheet, Decisions, EditedText, FolderList, Made, Mistake, ReachMap, Refusal, RunCommands, RunRequest, RunStatus, Said, SheetAnswers, SheetRead, TemplateText, TypicalDrawn, TypicalOrders, Written,

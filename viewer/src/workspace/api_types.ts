@@ -1,4 +1,4 @@
-// Requests and answers of `snug ui` (docs/ui.md) as types.
+// Requests and answers of `snug ui` (docs/ui-interface.md) as types.
 // Written by the test ApiForms.AreWhatThePageReads; the forms stand in src/snug/workspace/api_forms.cpp.
 
 /** What is wrong with a text. */
