@@ -117,6 +117,7 @@ bench-peers: setup-peers ## the same scenes in Bullet and MuJoCo, in one run; TO
 
 figures: build ## make the numbers that README and the documents state, and write them there, an hour; NAME="first-run sessions acceptance bench ur ur-frames"
 	@python3 tools/figures.py $(NAME)
+	@/usr/bin/python3 tools/charts.py
 
 pictures: build setup-test ## draw the pictures of the documents that show runs and pages, some minutes; NAME="report kitchen"
 	@python3 tools/pictures.py $(NAME)

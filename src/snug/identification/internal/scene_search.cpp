@@ -432,7 +432,7 @@ Eigen::VectorXd SceneSearch::curvature_steps(const Eigen::VectorXd& middle) {
 
 Eigen::MatrixXd SceneSearch::distance_covariance() {
   // An M-estimate: C = H^-1 S H^-1 / N, S the scatter of the recordings' slopes, H the curvature of the mean
-  // (docs/theory/identification.md, 9). In units of the steps h.
+  // (docs/theory/scene-identification.md, 1). In units of the steps h.
   const Eigen::VectorXd found = best_;  // what is tried here is no search
   const Eigen::VectorXd h = curvature_steps(free_of(found));
   best_ = found;

@@ -25,7 +25,7 @@ struct SplitErrors {
   /// Whether residuals hang together by more than chance and a twentieth, or an axis is off through a part of all
   /// recordings: then it is no noise that is left.
   [[nodiscard]] bool is_systematic() const;
-  /// What the squares of standard errors are to be enlarged by (docs/theory/identification.md, 9).
+  /// What the squares of standard errors are to be enlarged by (docs/theory/scene-identification.md, 1).
   [[nodiscard]] double inflation() const;
 };
 

@@ -1,4 +1,4 @@
-// SceneSearch: least squares over longer and longer parts of the recordings (docs/theory/identification.md, 9).
+// SceneSearch: least squares over longer and longer parts of the recordings (docs/theory/scene-identification.md, 1).
 #include <algorithm>
 #include <array>
 #include <limits>
