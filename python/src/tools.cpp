@@ -4,6 +4,7 @@
 #include "core.hpp"
 #include "handles.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/cup/potential_law.hpp"
 #include "snug/cup/statics.hpp"
 #include "snug/identification/payload_file.hpp"
 #include "snug/robot/inverse.hpp"
@@ -17,12 +18,18 @@ struct Cup {
   model::CupParams params;
   Matrix6 K;
 
+  [[nodiscard]] cup::LawResponse respond(const Pose& H) const {
+    if (params.law.is_used()) return cup::law_response(params.law, H);
+    return {cup::potential(H, K), cup::spring_wrench(H, K), cup::spring_tangent(H, K)};
+  }
+
   [[nodiscard]] py::dict settle(double mass, const Array& com, const Array& tool, const Array& gravity) const {
     cup::HeldLoad load;
     load.mass = mass;
     load.p_SScm = as_vector3(com, "com");
     load.R_WE = as_pose(tool, "tool").R;
     load.stiffness = K;
+    load.law = params.law;
     load.X_ES2.p = Vector3(0.0, 0.0, params.hold_length - params.centre_from_lip);
     load.X_SS1.p = Vector3(0.0, 0.0, -params.centre_from_lip);
     load.gravity_W = as_vector3(gravity, "gravity");
@@ -111,13 +118,13 @@ void bind_tools(py::module_& m) {
       .def_property_readonly("hold_length", [](const Cup& c) { return c.params.hold_length; })
       .def_property_readonly("lip_radius", [](const Cup& c) { return c.params.lip_radius; })
       .def(
-          "wrench", [](const Cup& c, const Array& H) { return as_array(cup::spring_wrench(as_pose(H, "H"), c.K)); },
+          "wrench", [](const Cup& c, const Array& H) { return as_array(c.respond(as_pose(H, "H")).wrench); },
           py::arg("H"))
       .def(
-          "tangent", [](const Cup& c, const Array& H) { return as_array(cup::spring_tangent(as_pose(H, "H"), c.K)); },
+          "tangent", [](const Cup& c, const Array& H) { return as_array(c.respond(as_pose(H, "H")).tangent); },
           py::arg("H"))
       .def(
-          "potential", [](const Cup& c, const Array& H) { return cup::potential(as_pose(H, "H"), c.K); }, py::arg("H"))
+          "potential", [](const Cup& c, const Array& H) { return c.respond(as_pose(H, "H")).energy; }, py::arg("H"))
       .def("settle", &Cup::settle, py::arg("mass"), py::arg("com"), py::arg("tool"), py::arg("gravity"))
       .def("payload", &Cup::payload, py::arg("times"), py::arg("gripper"), py::arg("wrenches"),
            py::arg("rigid_lip") = false);

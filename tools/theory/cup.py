@@ -1,5 +1,7 @@
 """cup.py: pictures of docs/theory/cup.md. The cup is that of the defaults of src/snug/model/cup_params.hpp."""
 import math
+import re
+from pathlib import Path
 
 from theory.drawing import BLUE, GREEN, GREY, RED, Axes, Picture
 
@@ -170,4 +172,31 @@ def cup_phases():
     return p
 
 
-PICTURES = {"cup-tangent": cup_tangent, "cup-rest": cup_rest, "cup-phases": cup_phases}
+def measured_law():
+    """The numbers of scenarios/cups/other-make.yaml below `cup`."""
+    text = (Path(__file__).resolve().parents[2] / "scenarios/cups/other-make.yaml").read_text(encoding="utf-8")
+    return {key: float(value) for key, value in re.findall(r"^    (\w+): ([-+.\de]+)$", text.split("\ncup:", 1)[1], re.M)}
+
+
+def cup_law():
+    p = Picture(290, "Axial force, lateral and bending stiffness of a measured cup over its compression")
+    law = measured_law()
+
+    def powers(name, u, degree=0):
+        return sum(law.get(f"{name}_{i}", 0.0) * u**i for i in range(degree, 6))
+
+    at = [i / 50 for i in range(-50, 51)]  # u, from most compressed to rest
+    half = 1000 * law["half_range"]
+    curves = [("axial force, N", (-25, 0), [-25, -20, -15, -10, -5, 0], RED, lambda u: powers("axial", u) - powers("axial", 1.0)),
+              ("lateral stiffness, N/m", (0, 3000), [0, 1000, 2000, 3000], BLUE, lambda u: powers("lateral", u)),
+              ("bending stiffness, Nm/rad", (0, 1.5), [0, 0.5, 1, 1.5], GREEN, lambda u: powers("bend", u))]
+    for i, (title, limits, ticks, color, curve) in enumerate(curves):
+        ax = Axes(p, 70 + 275 * i, 50, 200, 180, (0, 15), limits)
+        ax.ticks_x([0, 5, 10, 15], title="compression, mm")
+        ax.ticks_y(ticks, title=title)
+        ax.curve([(half * (1 - u), curve(u)) for u in at], color)
+    p.text(30, 280, "another make of cup, fitted to 1017 poses (scenarios/cups/other-make.yaml); force counted from the least compressed pose", GREY)
+    return p
+
+
+PICTURES = {"cup-tangent": cup_tangent, "cup-rest": cup_rest, "cup-phases": cup_phases, "cup-law": cup_law}

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "snug/cup/potential_law.hpp"
 #include "snug/spatial/matrix6.hpp"
 
 namespace snug::cup {
@@ -30,6 +31,7 @@ class Balance {
  public:
   explicit Balance(const HeldLoad& load)
       : K_(load.stiffness),
+        law_(load.law),
         weight_S2_(load.mass * ((load.R_WE * load.X_ES2.R).transpose() * load.gravity_W)),
         p_S1Scm_(load.X_SS1.inverse() * load.p_SScm) {}
 
@@ -37,12 +39,12 @@ class Balance {
     const Vector3 weight = fraction * (H.R.transpose() * weight_S2_);
     Vector6 gravity;
     gravity << weight, p_S1Scm_.cross(weight);
-    return spring_wrench(H, K_) + gravity;
+    return (law_.is_used() ? law_response(law_, H).wrench : spring_wrench(H, K_)) + gravity;
   }
 
   [[nodiscard]] Matrix6 tangent(const Pose& H, double fraction) const {
     const Matrix3 turn = skew(fraction * (H.R.transpose() * weight_S2_));
-    Matrix6 T = spring_tangent(H, K_);
+    Matrix6 T = law_.is_used() ? law_response(law_, H).tangent : spring_tangent(H, K_);
     T.topRightCorner<3, 3>() += turn;
     T.bottomRightCorner<3, 3>() += skew(p_S1Scm_) * turn;
     return T;
@@ -58,6 +60,7 @@ class Balance {
 
  private:
   Matrix6 K_;
+  model::CupLaw law_;
   Vector3 weight_S2_;
   Vector3 p_S1Scm_;
 };

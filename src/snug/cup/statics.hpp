@@ -7,13 +7,15 @@ namespace snug::cup {
 
 /// A load hanging from a cup. Only the directions of W matter, so the gripper's position is not asked for.
 struct HeldLoad {
-  Matrix3 R_WE = Matrix3::Identity();       ///< of the gripper's end
-  double mass = 1.0;                        ///< kg, not negative
-  Vector3 p_SScm = Vector3::Zero();         ///< centre of mass seen from the lip, in S, m
-  Matrix6 stiffness = Matrix6::Identity();  ///< K in S1, symmetric and positive definite
-  Pose X_ES2;                               ///< spring's end on the gripper
-  Pose X_SS1;                               ///< spring's end on the package
-  Vector3 gravity_W{0.0, 0.0, -9.81};       ///< m/s^2
+  Matrix3 R_WE = Matrix3::Identity();  ///< of the gripper's end
+  double mass = 1.0;                   ///< kg, not negative
+  Vector3 p_SScm = Vector3::Zero();    ///< centre of mass seen from the lip, in S, m
+  Matrix6 stiffness =
+      Matrix6::Identity();             ///< K in S1, symmetric and positive definite; with `law` its own, undeformed
+  model::CupLaw law;                   ///< in place of `stiffness` where it is used
+  Pose X_ES2;                          ///< spring's end on the gripper
+  Pose X_SS1;                          ///< spring's end on the package
+  Vector3 gravity_W{0.0, 0.0, -9.81};  ///< m/s^2
 };
 
 struct SettleOptions {

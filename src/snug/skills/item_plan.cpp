@@ -316,6 +316,7 @@ ToolFor make_tool_for(const model::Scenario& scenario, const PlannedBox& box, co
   load.mass = box.inertia.mass;
   load.p_SScm = X_PS.inverse() * box.inertia.com;
   load.stiffness = cup::as_matrix(params.stiffness);
+  load.law = params.law;
   load.X_ES2 = Pose{Matrix3::Identity(), Vector3(0.0, 0.0, params.hold_length - params.centre_from_lip)};
   load.X_SS1 = Pose{Matrix3::Identity(), Vector3(0.0, 0.0, -params.centre_from_lip)};
   load.gravity_W = scenario.gravity;

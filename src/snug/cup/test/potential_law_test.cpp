@@ -4,6 +4,7 @@
 
 #include "snug/core/rng.hpp"
 #include "snug/cup/law.hpp"
+#include "snug/cup/statics.hpp"
 #include "snug/cup/suction_cup.hpp"
 #include "snug/cup/test/vectors.hpp"
 
@@ -90,6 +91,42 @@ TEST(CupPotential, ACupOfALawPushesByIt) {
   const physics::ElementResponse pulled = SuctionCup(params, Pose{}).evaluate(query);
   EXPECT_NEAR(pulled.wrench[2], -params.law.axial(0.004).slope, 1e-12);
   EXPECT_NEAR(pulled.energy, params.law.axial(0.004).value, 1e-15);
+}
+
+HeldLoad load_under(const model::CupLaw& law) {
+  HeldLoad load;
+  load.mass = 1.2;
+  load.p_SScm = Vector3(0.01, -0.02, 0.05);
+  load.R_WE = exp_rotation(Vector3(3.0, 0.2, -0.1));
+  load.stiffness = as_matrix(model::undeformed_stiffness(law));
+  load.law = law;
+  load.X_ES2.p = Vector3(0.0, 0.0, 0.025);
+  load.X_SS1.p = Vector3(0.0, 0.0, -0.025);
+  return load;
+}
+
+TEST(CupPotential, ALoadRestsWhereItsWrenchBalancesGravity) {
+  const HeldLoad load = load_under(compressible());
+  const SettleResult result = settle(load);
+  ASSERT_EQ(result.status, SettleStatus::Converged);
+  EXPECT_TRUE(result.is_stable);
+  const Pose H = load.X_ES2.inverse() * result.X_ES * load.X_SS1;
+  const Vector3 weight = load.mass * ((load.R_WE * load.X_ES2.R * H.R).transpose() * load.gravity_W);
+  const Vector3 arm = load.X_SS1.inverse() * load.p_SScm;
+  const Vector6 wrench = law_response(load.law, H).wrench;
+  EXPECT_LE((wrench.head<3>() + weight).norm(), 1e-9);
+  EXPECT_LE((wrench.tail<3>() + arm.cross(weight)).norm(), 1e-10);
+}
+
+TEST(CupPotential, ALoadUnderConstantStiffnessRestsAsUnderFiveNumbers) {
+  model::CupLaw law;
+  law.half_range = 0.01, law.axial_1 = 60.0;
+  law.lateral_0 = 2500.0, law.bend_0 = 5.0, law.torsion_0 = 3.0, law.coupling_0 = 20.0;
+  const HeldLoad load = load_under(law);
+  HeldLoad plain = load;
+  plain.law = {};
+  EXPECT_LE((settle(load).X_ES.p - settle(plain).X_ES.p).norm(), 1e-11);
+  EXPECT_LE(angle_between(settle(load).X_ES.R, settle(plain).X_ES.R), 1e-9);
 }
 
 }  // namespace
