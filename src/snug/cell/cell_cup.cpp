@@ -135,17 +135,21 @@ void CellCup::check_hold(const physics::WorldState& world_state, const Pose& X_W
   }
 }
 
-void CellCup::advance_gas(const physics::WorldState& world_state, const Pose& X_WE, const cup::CupCommand& command,
-                          double dt, CupHold& state) const {
-  double length = 0.0;
+void CellCup::advance_gas(const physics::WorldState& world_state, const Pose& X_WE, const Twist& V_WE,
+                          const cup::CupCommand& command, double dt, CupHold& state) const {
   if (state.cup.phase != cup::CupPhase::Free) {
-    const Vector3 p_WS =
-        physics::pose_of(world_->model, world_state, physics::BodyId{state.cup.body}) * state.cup.X_PS.p;
-    length = (X_WE.R.transpose() * (p_WS - X_WE.p)).z();
+    const physics::ElementQuery query = query_of(*world_, world_state, state.cup.body, X_WE, V_WE);
+    const Vector3 p_BS_W = query.X_WB.R * state.cup.X_PS.p, p_ES_W = query.X_WB.p + p_BS_W - X_WE.p;
+    const Vector3 v_ES_W =
+        query.V_WB.linear + query.V_WB.angular.cross(p_BS_W) - V_WE.linear - V_WE.angular.cross(p_ES_W);
+    const double length = (X_WE.R.transpose() * p_ES_W).z();
     // Recordings are of releases with blow-off: others are those of the phases.
     const bool begins = state.cup.phase == cup::CupPhase::Holding && command.blow_off && params_.release.is_used();
     if (!command.vacuum && (begins || state.cup.release_time > 0.0)) {
-      cup::advance_release(params_, command.blow_off, length, dt, state.cup);
+      // A step's pressure is that halfway through it, so the second half of the last step comes first.
+      const double rate = (X_WE.R.transpose() * v_ES_W).z();
+      if (!begins) cup::advance_release(params_, command.blow_off, state.cup.length, 0.5 * dt, state.cup);
+      cup::advance_release(params_, command.blow_off, length + 0.5 * dt * rate, 0.5 * dt, state.cup);
       return;
     }
     cup::follow_length(params_, length, state.cup);
@@ -159,7 +163,7 @@ void CellCup::prepare(const physics::WorldState& world_state, const Pose& X_WE, 
                       std::vector<GripperEvent>& events) const {
   out.element = nullptr;
   out.body = out.ignored = -1;
-  if (mode_ == cup::CupMode::Phases) advance_gas(world_state, X_WE, command, dt, state);
+  if (mode_ == cup::CupMode::Phases) advance_gas(world_state, X_WE, V_WE, command, dt, state);
   state.vacuum_time = command.vacuum ? state.vacuum_time + dt : 0.0;
   if (!command.vacuum) state.has_reported = false;
   if (command.vacuum) state.is_letting_go = false;

@@ -92,8 +92,8 @@ class CellCup {
                    std::vector<GripperEvent>& events) const;
   void check_hold(const physics::WorldState& world_state, const Pose& X_WE, const Twist& V_WE, double dt,
                   const cup::SuctionCup& cup, CupHold& state, std::vector<GripperEvent>& events) const;
-  void advance_gas(const physics::WorldState& world_state, const Pose& X_WE, const cup::CupCommand& command, double dt,
-                   CupHold& state) const;
+  void advance_gas(const physics::WorldState& world_state, const Pose& X_WE, const Twist& V_WE,
+                   const cup::CupCommand& command, double dt, CupHold& state) const;
   void let_go(GripperEvent event, CupHold& state, std::vector<GripperEvent>& events) const;
 
   model::CupParams params_;
