@@ -98,6 +98,7 @@ void measure_validation(const BenchOptions& options, std::vector<Figure>& figure
   figures.push_back({"validation.true.rest_mm", kMm * found.true_clean.rest_position, "mm", "", true});
   figures.push_back({"validation.true.rms_mm", kMm * found.true_clean.rms_position, "mm", "", true});
   figures.push_back({"validation.true.rms_mm.report", kMm * found.true_report.rms_position, "mm", "", true});
+  figures.push_back({"validation.true.rms_deg.report", kDegrees * found.true_report.rms_rotation, "deg", "", true});
   figures.push_back(at_most("validation.true.shift_ms", found.worst_shift_ms, "ms", 1.0));
   for (const auto& [form, means] : {std::pair("", &found.off_clean), std::pair(".report", &found.off_report)}) {
     const std::string name = "validation.off_by_one.";

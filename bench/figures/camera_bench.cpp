@@ -225,6 +225,7 @@ void measure_at_rest(const model::Scenario& scenario, const model::CameraParams&
   add("angle_p95_deg", at_part(score.angle_deg, 0.95), "deg", 0.7);
   figures.push_back({name + "angle_rms_deg", root_mean_square(score.angle_deg), "deg", "", true});
   figures.push_back({name + "seen_percent", percent(score.visible_seen, score.visible), "%", "", true});
+  figures.push_back({name + "hidden_boxes", static_cast<double>(score.hidden), "boxes", "", true});
   add("hidden_seen_percent", percent(score.hidden_seen, score.hidden), "%", 0.1);
   figures.push_back({name + "more_than_20mm_off", static_cast<double>(score.wrong), "boxes", "", true});
   const double chi = mean_chi_square(score);

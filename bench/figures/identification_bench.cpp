@@ -209,19 +209,26 @@ void measure_payload(std::vector<Figure>& figures) {
 void measure_identification(const BenchOptions& options, std::vector<Figure>& figures) {
   const std::filesystem::path poses = options.cup_data / "identification.json",
                               decays = options.cup_data / "decay.json";
-  if (std::filesystem::exists(poses))
-    measure_reference_poses(poses, figures);
-  else
-    figures.push_back({"identification.reference_poses", 0.0, "%", "", true, "no " + poses.string()});
-  measure_exact_poses(figures);
-  measure_coverage(figures);
-  if (std::filesystem::exists(decays))
-    measure_reference_decays(decays, figures);
-  else
-    figures.push_back({"identification.reference_decays", 0.0, "%", "", true, "no " + decays.string()});
-  measure_plucks(figures);
-  measure_payload(figures);
-  measure_planted(options, figures);
+  const auto is_wanted = [&](const std::string& name) {
+    return ("identification." + name).starts_with(options.only) || options.only.starts_with("identification." + name);
+  };
+  if (is_wanted("compliance") || is_wanted("errors_in_variables")) {
+    if (std::filesystem::exists(poses))
+      measure_reference_poses(poses, figures);
+    else
+      figures.push_back({"identification.reference_poses", 0.0, "%", "", true, "no " + poses.string()});
+    measure_coverage(figures);
+  }
+  if (is_wanted("wrench")) measure_exact_poses(figures);
+  if (is_wanted("damping")) {
+    if (std::filesystem::exists(decays))
+      measure_reference_decays(decays, figures);
+    else
+      figures.push_back({"identification.reference_decays", 0.0, "%", "", true, "no " + decays.string()});
+    measure_plucks(figures);
+  }
+  if (is_wanted("payload")) measure_payload(figures);
+  if (is_wanted("planted")) measure_planted(options, figures);
 }
 
 }  // namespace snug::bench::internal

@@ -60,16 +60,17 @@ std::vector<PlantedExperiment> planted_experiments(const std::vector<std::string
   const Planted clearance = planted("clearance", "parcel_clearance", 0.002, 0.0, 0.005, 5e-5, 0.0028, 3e-4);
   const Planted push = planted("release_push", "cup.release_push", 0.7, 0.3, 1.0, 0.01, 0.8, 0.05 * 0.8);
   const Planted vent = planted("vent_time", "cup.vacuum.vent_time", 0.03, 0.01, 0.1, 0.001, 0.045, 0.05 * 0.045);
-  return {{"held", 20.0, 1, true, {bend, lateral, com_x}, 60.0, {1, 2, 3}},
-          {"packed", 120.0, 5, true, {friction, restitution, clearance}, 120.0, {1, 2, 3}},
-          {"released", 80.0, 4, false, {push, vent, clearance}, 120.0, {1, 2, 3}},
+  const std::vector<std::uint64_t> seeds = {31, 32, 33};  // nothing was chosen on these: the search was on 1 to 3
+  return {{"held", 20.0, 1, true, {bend, lateral, com_x}, 60.0, seeds},
+          {"packed", 120.0, 5, true, {friction, restitution, clearance}, 120.0, seeds},
+          {"released", 80.0, 4, false, {push, vent, clearance}, 120.0, seeds},
           {"whole",
            kWhole,
            boxes.size(),
            false,
            {lateral, axial, bend, torsion, com_x, friction, bench_friction, clearance, push, vent},
            120.0,
-           {1}}};
+           {seeds.front()}}};
 }
 
 class PlantedBench {
@@ -164,6 +165,8 @@ class PlantedBench {
     const std::string prefix = "identification.planted." + experiment.name;
     for (std::size_t i = 0; i < error.size(); ++i) {
       const std::string name = prefix + "." + experiment.numbers[i].parameter.name;
+      figures_.push_back({name + "_start", experiment.numbers[i].parameter.value, "SI", "", true});
+      figures_.push_back({name + "_truth", experiment.numbers[i].truth, "SI", "", true});
       figures_.push_back(at_most(name + "_error", error[i], "SI", experiment.numbers[i].allowed));
       figures_.push_back(at_most(name + "_error_over_its_standard_error", over_its_error[i], "1", kCovered));
     }

@@ -1,12 +1,15 @@
 // Reads the reference vectors of the cup model, and makes random inputs for its tests.
 #pragma once
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "snug/core/rng.hpp"
 #include "snug/spatial/pose.hpp"
@@ -22,6 +25,24 @@ inline nlohmann::json load_vectors(const std::string& name) {
   std::ifstream file(vectors_path(name));
   return file ? nlohmann::json::parse(file) : nlohmann::json();
 }
+
+/// The largest of some errors, which the test records beside its verdict.
+class Worst {
+ public:
+  explicit Worst(std::string name) : name_(std::move(name)) {}
+  Worst(const Worst&) = delete;
+  Worst& operator=(const Worst&) = delete;
+  ~Worst() { testing::Test::RecordProperty(name_, fmt::format("{:.3g}", value_)); }
+
+  double add(double error) {
+    value_ = std::max(value_, error);
+    return error;
+  }
+
+ private:
+  std::string name_;
+  double value_ = 0.0;
+};
 
 inline Vector3 vector3(const nlohmann::json& v) {
   return {v.at(0).get<double>(), v.at(1).get<double>(), v.at(2).get<double>()};

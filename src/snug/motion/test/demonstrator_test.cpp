@@ -53,7 +53,9 @@ TEST_P(DemonstratorSequence, TakesAsLongAsReported) {
 TEST_P(DemonstratorSequence, IsAboutTwoSecondsShorterWithoutCorrectionsAndSampledCoast) {
   SNUG_NEED_WAYPOINT_FILES();
   const Reported& reported = GetParam();
-  EXPECT_NEAR(duration_of(reported.sequence, false, false), reported.plain, 1.0);
+  const double duration = duration_of(reported.sequence, false, false);
+  RecordProperty("duration_s", std::to_string(duration));
+  EXPECT_NEAR(duration, reported.plain, 1.0);
 }
 
 TEST_P(DemonstratorSequence, SpendsLessThanHalfOfItsTimeOnTheReferenceMotions) {
@@ -72,6 +74,8 @@ TEST_P(DemonstratorSequence, SpendsLessThanHalfOfItsTimeOnTheReferenceMotions) {
     worst_jump = std::max(
         worst_jump, 0.5 * (sampled.peak_speed - sampled.coast_speed) * (sampled.duration - 2.0 * sampled.blend_time));
   }
+  RecordProperty("trapezoids_s", std::to_string(total));
+  RecordProperty("worst_jump_mm", std::to_string(1000.0 * worst_jump));
   EXPECT_NEAR(total, reported.reference, 1.1);  // the figures are rounded to seconds, the point model starts elsewhere
   EXPECT_NEAR(worst_jump, 0.0215, 0.001);       // interfaces 2.3: jumps of the reference up to 21-22 mm
   // Exact tracking adds the waits and half a tick a row.
