@@ -115,7 +115,8 @@ bench-peers: setup-peers ## the same scenes in Bullet and MuJoCo, in one run; TO
 	@$(call configure-build,bench) && build-bench/bench_peers \
 	  $(if $(TOSSES),--tosses $(TOSSES) --engine snug --engine bullet-si10 --engine mujoco-elliptic-stiff)
 
-figures: build ## make the numbers that README and the documents state, and write them there, an hour; NAME="first-run sessions acceptance bench ur ur-frames"
+figures: build ## make the numbers that README and the documents state, and write them there, hours; NAME="camera tosses" for some, NAME=--list for all names
+	@cmake --build --preset release -j $(JOBS) --target cup_test motion_test physics_test
 	@python3 tools/figures.py $(NAME)
 	@/usr/bin/python3 tools/charts.py
 

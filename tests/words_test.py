@@ -36,7 +36,7 @@ KNOWS_OLD_WORDS = {"src/snug/motion/test/program_tracking_test.cpp"}
 
 
 READ = ("*.md", "docs/**/*.md", "src/**/README.md", "viewer/README.md", "bench/README.md", "scenarios/**/*.yaml", "scenarios/**/*.md", "apps/**/*.[ch]pp", "src/**/*.[ch]pp",
-        "viewer/src/**/*.ts", "python/**/*.py", "python/**/*.pyi", "python/src/*.cpp", "examples/**/*.py", "tools/*.py")
+        "viewer/src/**/*.ts", "python/**/*.py", "python/**/*.pyi", "python/src/*.cpp", "examples/**/*.py", "tools/**/*.py")
 
 
 def texts():

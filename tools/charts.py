@@ -261,9 +261,8 @@ def tosses():
     """Errors of the tosses: position in mm and rotation in degrees."""
     found = []
     for row in tables("theory/scene-identification.md", "3. The cube tosses")[0][1:]:
-        label = re.sub(r", mean of 24 draws| that noise of the start sets.*", "", row[0]).replace("friction, softness, edge, moments, height by random search", "by random search")
-        found.append((label.replace("every number off by one standard error", "numbers off by one deviation"), [(None, float(row[1]), None, BLUE), (None, float(row[2]), None, SAND)]))
-    return ranges("Mean error of a toss", found, [0, 2, 4, 6, 8, 10, 12, 14], "", [("position, mm", BLUE), ("rotation, degrees", SAND)], left=300)
+        found.append((row[0].removesuffix(" that noise of the start sets"), [(None, numbers(row[1])[0], None, BLUE), (None, numbers(row[2])[0], None, SAND)]))
+    return ranges("Mean error of a toss", found, [0, 2, 4, 6, 8, 10, 12, 14], "", [("position, mm", BLUE), ("rotation, degrees", SAND)], left=150)
 
 
 # ---- curves
