@@ -87,7 +87,7 @@ double largest_volume(const Prospect& prospect) {
 /// contact knows nothing and is as good where boxes are unlike those that it was tuned on.
 std::vector<Policy> policies_for(const Planning& planning, std::span<const Item> kinds) {
   std::vector<Policy> policies(2, make_policy(planning, kinds));
-  policies.back().weights = contact_weights();
+  policies.back().weights = planning.has_walls ? contact_weights() : from_below(contact_weights());
   return policies;
 }
 
@@ -284,7 +284,8 @@ class ContactAwareAgent : public Agent {
 
 Planning plan_for_contact(const ContainerState& state, const PackingSettings& settings) {
   // What is planned to press between walls would stick out beyond the edge of a pallet.
-  return {state.inner_size, settings, settings.max_flips, 0.0, state.has_walls ? settings.planned_interference : 0.0};
+  return {state.inner_size, settings, settings.max_flips, 0.0, state.has_walls ? settings.planned_interference : 0.0,
+          state.has_walls};
 }
 
 std::int64_t work_for(double seconds) { return static_cast<std::int64_t>(seconds * kPlacesPerSecond); }
@@ -310,7 +311,8 @@ Policy make_policy(const Planning& planning, std::span<const Item> kinds) {
     }
   }
   const int longest = to_ticks(planning.inner_size.head<2>().maxCoeff());
-  return {default_weights(), WasteTable(along, longest), WasteTable(up, to_ticks(planning.inner_size.z()))};
+  const Weights weights = planning.has_walls ? default_weights() : from_below(default_weights());
+  return {weights, WasteTable(along, longest), WasteTable(up, to_ticks(planning.inner_size.z()))};
 }
 
 std::unique_ptr<Agent> make_contact_aware_agent(AgentInput input) {

@@ -128,8 +128,9 @@ std::optional<Stream> draw_stream(const std::string& family, Rng rng) {
       std::ranges::stable_sort(cuts, {}, [](const Cut& one) { return one.low[2]; });
     }
     for (const Cut& cut : cuts) stream.items.push_back(make_item_of(metres(cut.size), stream.items.size()));
-  } else if (family == "cartons") {
+  } else if (family == "cartons" || family == "cartons-pallet") {
     stream.container.inner_size = Vector3(0.6, 0.4, 0.3);
+    stream.container.has_walls = family == "cartons";
     stream.settings = plain_settings(0.6);
     stream.settings.com_margin = 0.005;
     const auto draw = [&rng](std::size_t number) {

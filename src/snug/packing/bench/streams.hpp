@@ -19,7 +19,8 @@ struct Stream {
 };
 
 /// `family`: rs, rs-support (sides 1 to 5 of a 10^3 container, drawn independently), cut1, cut2 (the container cut into
-/// sides 2 to 5; by height, by what stands on what), cartons (60 to 300 mm, 600x400x300). None: no such family.
+/// sides 2 to 5; by height, by what stands on what), cartons (60 to 300 mm, 600x400x300), cartons-pallet (the same on a
+/// slab of that size). None: no such family.
 [[nodiscard]] std::optional<Stream> draw_stream(const std::string& family, Rng rng);
 
 /// The place of which most of the surface touches boxes, floor and walls.

@@ -16,6 +16,7 @@ struct Planning {
   int max_flips = 0;
   double margin = 0.0;                ///< m
   double planned_interference = 0.0;  ///< m
+  bool has_walls = true;              ///< false: a pallet
 };
 
 [[nodiscard]] int to_ticks(double metres);

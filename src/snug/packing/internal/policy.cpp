@@ -72,6 +72,13 @@ Weights contact_weights() {
   return w;
 }
 
+Weights from_below(Weights weights) {
+  // A tenth of the height counts as much as a face that touches all round; a few millimetres of unevenness do not.
+  constexpr double kWeightOfBase = 10.0;
+  weights[Base] += kWeightOfBase;
+  return weights;
+}
+
 WasteTable::WasteTable(const std::vector<int>& lengths, int longest) {
   const int last = longest / kTicksPerMillimetre;
   std::vector<char> reached(static_cast<std::size_t>(last) + 1, 0);

@@ -30,6 +30,8 @@ using Weights = std::array<double, kFeatureCount>;
 [[nodiscard]] Weights default_weights();
 /// Maximal contact: as much of the whole surface as can be touches boxes, floor and walls; of equals the lowest.
 [[nodiscard]] Weights contact_weights();
+/// The same for a container without walls: of two places the lower one. Nothing holds a column that stands by itself.
+[[nodiscard]] Weights from_below(Weights weights);
 
 /// What is left of a length when it is filled as well as sums of these lengths can: one entry a millimetre.
 class WasteTable {

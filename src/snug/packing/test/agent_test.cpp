@@ -55,6 +55,29 @@ TEST_P(EveryAgent, StaysOverTheSlabOfAPallet) {
   test::expect_sound(state, 0.0, PackingSettings().min_support);  // nothing gives way: nothing holds it from the side
 }
 
+TEST(ContactAwareAgent, FillsAPalletLayerByLayer) {
+  constexpr std::size_t kInLayer = 5, kLayers = 6;
+  ContainerState state;
+  state.inner_size = Vector3(1.23, 1.03, 1.85);
+  state.has_walls = false;
+  std::vector<Item> cartons;
+  for (std::size_t i = 0; i < kInLayer * kLayers; ++i) {
+    cartons.push_back(make_box("C" + std::to_string(i), {0.6, 0.4, 0.3}));
+    cartons.back().upright_only = true;
+  }
+  const FutureModel future{cartons, std::vector<double>(cartons.size(), 1.0), true};
+  const auto agent = make_agent(
+      "contact-aware", {.settings = {}, .future = future, .sequence = {}, .is_reachable = {}, .run = {.time = 0.05}});
+  for (std::size_t i = 0; i < cartons.size(); ++i) {
+    SCOPED_TRACE(i);
+    const auto decision = agent->decide(state, cartons[i]);
+    ASSERT_TRUE(decision) << describe(decision.error());
+    state = with_candidate(std::move(state), cartons[i], decision->candidates.front());
+    const double layer = static_cast<double>(i / kInLayer);
+    EXPECT_NEAR(bounding_extent(state.boxes.back()).low.z(), 0.3 * layer, 1e-3);  // levels are whole millimetres
+  }
+}
+
 /// Two things that nobody expected, one on the floor and one standing higher.
 TEST_P(EveryAgent, KeepsToObstaclesAndPutsNothingOnThem) {
   ContainerState start = make_container_state(scenario.containers.front());
