@@ -73,7 +73,7 @@ def others(words, name):
 @functools.cache  # of the program that the figures were begun with
 def commit():
     """The last one that changed the program or what it reads."""
-    done = subprocess.run(["git", "log", "-1", "--format=%h", "--", "src", "apps", "scenarios", "bench/figures", ":!*.md"], cwd=ROOT, capture_output=True, text=True, check=False)
+    done = subprocess.run(["git", "log", "-1", "--format=%h", "--", "src", "apps", "scenarios", ":!*.md", ":!*/test/*"], cwd=ROOT, capture_output=True, text=True, check=False)
     return done.stdout.strip() or "unknown"
 
 

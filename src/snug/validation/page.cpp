@@ -113,10 +113,9 @@ Markup error_section(const Validation& validation, const TablePlan& plan) {
       fmt::format("The report's simulation beside its real cell: {:.2f} {}, {:.2f} {} (mean of all five sequences).",
                   plan.scale_first * (reported_means().*plan.mean_first), plan.unit_first,
                   plan.scale_second * (reported_means().*plan.mean_second), plan.unit_second);
-  const std::string floor =
-      plan.shows_tracking
-          ? " With identical physics on both sides the report form gives 2.3 mm and 3.4 degrees: its floor."
-          : "";
+  const std::string floor = plan.shows_tracking ? " With identical physics on both sides the report form gives 0.7 to "
+                                                  "2.3 mm and 0.6 to 3.4 degrees: its floor."
+                                                : "";
   return report::heading(2, plan.title) + report::paragraph(plan.text) + as_markup(error_table(validation, plan)) +
          report::paragraph(report::small(reported + floor));
 }
