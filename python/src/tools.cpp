@@ -18,10 +18,7 @@ struct Cup {
   model::CupParams params;
   Matrix6 K;
 
-  [[nodiscard]] cup::LawResponse respond(const Pose& H) const {
-    if (params.law.is_used()) return cup::law_response(params.law, H);
-    return {cup::potential(H, K), cup::spring_wrench(H, K), cup::spring_tangent(H, K)};
-  }
+  [[nodiscard]] cup::LawResponse respond(const Pose& H) const { return cup::spring_response(H, K, params.law); }
 
   [[nodiscard]] py::dict settle(double mass, const Array& com, const Array& tool, const Array& gravity) const {
     cup::HeldLoad load;

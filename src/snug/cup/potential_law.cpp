@@ -58,4 +58,17 @@ LawResponse law_response(const model::CupLaw& law, const Pose& H) {
           -0.5 * pullback_derivative(H, gradient) - 0.25 * J.transpose() * hessian * J};
 }
 
+LawResponse spring_response(const Pose& H, const Matrix6& K, const model::CupLaw& law) {
+  if (law.is_used()) return law_response(law, H);
+  return {potential(H, K), spring_wrench(H, K), spring_tangent(H, K)};
+}
+
+Vector6 spring_wrench(const Pose& H, const Matrix6& K, const model::CupLaw& law) {
+  return law.is_used() ? law_response(law, H).wrench : spring_wrench(H, K);
+}
+
+Matrix6 spring_tangent(const Pose& H, const Matrix6& K, const model::CupLaw& law) {
+  return law.is_used() ? law_response(law, H).tangent : spring_tangent(H, K);
+}
+
 }  // namespace snug::cup

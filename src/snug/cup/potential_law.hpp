@@ -26,4 +26,9 @@ struct LawResponse {
 };
 [[nodiscard]] LawResponse law_response(const model::CupLaw& law, const Pose& H);
 
+/// The same of a cup: by its law where that is used, else by its stiffness K (law.hpp).
+[[nodiscard]] LawResponse spring_response(const Pose& H, const Matrix6& K, const model::CupLaw& law);
+[[nodiscard]] Vector6 spring_wrench(const Pose& H, const Matrix6& K, const model::CupLaw& law);
+[[nodiscard]] Matrix6 spring_tangent(const Pose& H, const Matrix6& K, const model::CupLaw& law);
+
 }  // namespace snug::cup

@@ -39,12 +39,12 @@ class Balance {
     const Vector3 weight = fraction * (H.R.transpose() * weight_S2_);
     Vector6 gravity;
     gravity << weight, p_S1Scm_.cross(weight);
-    return (law_.is_used() ? law_response(law_, H).wrench : spring_wrench(H, K_)) + gravity;
+    return spring_wrench(H, K_, law_) + gravity;
   }
 
   [[nodiscard]] Matrix6 tangent(const Pose& H, double fraction) const {
     const Matrix3 turn = skew(fraction * (H.R.transpose() * weight_S2_));
-    Matrix6 T = law_.is_used() ? law_response(law_, H).tangent : spring_tangent(H, K_);
+    Matrix6 T = spring_tangent(H, K_, law_);
     T.topRightCorner<3, 3>() += turn;
     T.bottomRightCorner<3, 3>() += skew(p_S1Scm_) * turn;
     return T;

@@ -43,9 +43,7 @@ physics::ElementResponse SuctionCup::evaluate(const physics::ElementQuery& query
   const Vector3& r = state.p_PcmS1;
   Matrix6 A;  // twist of S1 in its own axes from the velocity of the centre of mass and the angular velocity in W
   A << R.transpose(), -R.transpose() * skew(r), Matrix3::Zero(), R.transpose();
-  const LawResponse spring =
-      law_.is_used() ? law_response(law_, state.H)
-                     : LawResponse{potential(state.H, K_), spring_wrench(state.H, K_), spring_tangent(state.H, K_)};
+  const LawResponse spring = spring_response(state.H, K_, law_);
   const Vector6 both = spring.wrench - D_ * state.twist_S1;
   physics::ElementResponse response;
   response.wrench = A.transpose() * both;
@@ -65,7 +63,7 @@ physics::ElementResponse SuctionCup::evaluate(const physics::ElementQuery& query
 
 Wrench SuctionCup::lip_wrench(const physics::ElementQuery& query) const noexcept {
   const State state = state_of(query);
-  const Vector6 spring = law_.is_used() ? law_response(law_, state.H).wrench : spring_wrench(state.H, K_);
+  const Vector6 spring = spring_wrench(state.H, K_, law_);
   return wrench_from(wrench_transform(X_SS1_) * (spring - D_ * state.twist_S1));
 }
 

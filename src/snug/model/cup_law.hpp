@@ -7,7 +7,7 @@
 
 namespace snug::model {
 
-/// A function of z, or of u, and what it changes by.
+/// A function of z, or of u: its value, first and second derivative.
 struct Curve {
   double value = 0.0;
   double slope = 0.0;

@@ -7,26 +7,16 @@
 #include "snug/cup/statics.hpp"
 #include "snug/cup/suction_cup.hpp"
 #include "snug/cup/test/vectors.hpp"
+#include "snug/model/test/compressible_cup.hpp"
 
 namespace snug::cup {
 namespace {
-
-model::CupLaw compressible() {
-  model::CupLaw law;
-  law.half_range = 0.007, law.middle = -0.009;
-  law.axial_1 = 20.0, law.axial_2 = -3.0, law.axial_3 = 2.0, law.axial_4 = 1.0, law.axial_5 = 0.5;
-  law.lateral_0 = 1200.0, law.lateral_1 = 300.0, law.lateral_2 = 100.0;
-  law.bend_0 = 0.8, law.bend_1 = 0.1, law.bend_2 = 0.05;
-  law.coupling_0 = 12.0, law.coupling_1 = 2.0, law.coupling_2 = -1.0;
-  law.torsion_0 = 0.2, law.torsion_1 = -0.05;
-  return law;
-}
 
 Pose moved_by(const Pose& H, const Vector6& nu) { return {H.R * exp_rotation(nu.tail<3>()), H.p + H.R * nu.head<3>()}; }
 
 TEST(CupPotential, WrenchIsMinusTheGradientOfTheEnergyAndTheTangentItsDerivative) {
   Rng rng(7);
-  const model::CupLaw law = compressible();
+  const model::CupLaw law = model::test::compressible_cup();
   const double h = 1e-6;
   for (int i = 0; i < 200; ++i) {
     const Pose H = test::random_pose(rng, 0.5, 0.02);
@@ -58,7 +48,7 @@ TEST(CupPotential, WithConstantStiffnessIsTheLawOfFiveNumbers) {
 
 TEST(CupPotential, TermsTimesCoefficientsAreTheResponse) {
   Rng rng(9);
-  const model::CupLaw law = compressible();
+  const model::CupLaw law = model::test::compressible_cup();
   Eigen::Matrix<double, kLawTerms, 1> coefficients;
   coefficients << 0.0, law.axial_1, law.axial_2, law.axial_3, law.axial_4, law.axial_5, law.lateral_0, law.lateral_1,
       law.lateral_2, law.bend_0, law.bend_1, law.bend_2, law.coupling_0, law.coupling_1, law.coupling_2, law.torsion_0,
@@ -75,7 +65,7 @@ TEST(CupPotential, TermsTimesCoefficientsAreTheResponse) {
 
 TEST(CupPotential, LooksTheSameFromAllSides) {
   Rng rng(10);
-  const model::CupLaw law = compressible();
+  const model::CupLaw law = model::test::compressible_cup();
   for (int i = 0; i < 50; ++i) {
     const Pose H = test::random_pose(rng, 0.5, 0.02),
                turn{exp_rotation(Vector3(0.0, 0.0, rng.uniform(-3.0, 3.0))), Vector3::Zero()};
@@ -85,7 +75,7 @@ TEST(CupPotential, LooksTheSameFromAllSides) {
 
 TEST(CupPotential, ACupOfALawPushesByIt) {
   model::CupParams params;
-  params.law = compressible();
+  params.law = model::test::compressible_cup();
   physics::ElementQuery query;
   query.X_WB.p.z() = params.hold_length + 0.004;  // the face, drawn away by 4 mm
   const physics::ElementResponse pulled = SuctionCup(params, Pose{}).evaluate(query);
@@ -106,7 +96,7 @@ HeldLoad load_under(const model::CupLaw& law) {
 }
 
 TEST(CupPotential, ALoadRestsWhereItsWrenchBalancesGravity) {
-  const HeldLoad load = load_under(compressible());
+  const HeldLoad load = load_under(model::test::compressible_cup());
   const SettleResult result = settle(load);
   ASSERT_EQ(result.status, SettleStatus::Converged);
   EXPECT_TRUE(result.is_stable);

@@ -7,24 +7,13 @@
 #include "snug/core/input_error.hpp"
 #include "snug/model/cup_params.hpp"
 #include "snug/model/scenario.hpp"
+#include "snug/model/test/compressible_cup.hpp"
 
 namespace snug::model {
 namespace {
 
-CupLaw some_law() {
-  CupLaw law;
-  law.half_range = 0.007;
-  law.middle = -0.009;
-  law.axial_1 = 20.0, law.axial_2 = -3.0, law.axial_3 = 2.0, law.axial_4 = 1.0, law.axial_5 = 0.5;
-  law.lateral_0 = 1200.0, law.lateral_1 = 300.0, law.lateral_2 = 100.0;
-  law.bend_0 = 0.8, law.bend_1 = 0.1, law.bend_2 = 0.05;
-  law.coupling_0 = 12.0, law.coupling_1 = 2.0, law.coupling_2 = -1.0;
-  law.torsion_0 = 0.2, law.torsion_1 = -0.05;
-  return law;
-}
-
 TEST(CupLaw, SlopesAndCurvaturesAreDerivativesInsideAndOutsideOfTheMeasuredRange) {
-  const CupLaw law = some_law();
+  const CupLaw law = test::compressible_cup();
   const double h = 1e-7;
   for (double z = -0.035; z < 0.02; z += 0.00061) {
     for (const auto curve : {&CupLaw::axial, &CupLaw::lateral, &CupLaw::bend, &CupLaw::coupling, &CupLaw::torsion}) {
@@ -36,14 +25,14 @@ TEST(CupLaw, SlopesAndCurvaturesAreDerivativesInsideAndOutsideOfTheMeasuredRange
 }
 
 TEST(CupLaw, NothingPullsWhereNothingIsDeformed) {
-  const Curve rest = some_law().axial(0.0);
+  const Curve rest = test::compressible_cup().axial(0.0);
   EXPECT_EQ(rest.value, 0.0);
   EXPECT_EQ(rest.slope, 0.0);
-  EXPECT_EQ(undeformed_stiffness(some_law()).axial, rest.curvature);
+  EXPECT_EQ(undeformed_stiffness(test::compressible_cup()).axial, rest.curvature);
 }
 
 TEST(CupLaw, StiffnessesEndBeyondTheMeasuredRangeAndTheAxialForceGoesOnStraight) {
-  const CupLaw law = some_law();
+  const CupLaw law = test::compressible_cup();
   const double at_the_end = 1200.0 + 300.0 * 1.25 + 100.0 * 1.25 * 1.25;
   EXPECT_NEAR(law.lateral(law.middle + 1e3 * law.half_range).value, at_the_end, 1e-3);
   const double end = law.axial(law.middle + law.half_range).curvature;
@@ -51,11 +40,11 @@ TEST(CupLaw, StiffnessesEndBeyondTheMeasuredRangeAndTheAxialForceGoesOnStraight)
 }
 
 TEST(CupLaw, ScaledIsEveryForceTimesTheFactor) {
-  CupLaw law = some_law();
+  CupLaw law = test::compressible_cup();
   law.scale(0.25);
   for (const double z : {-0.02, -0.009, 0.004}) {
-    EXPECT_NEAR(law.axial(z).slope, 0.25 * some_law().axial(z).slope, 1e-12);
-    EXPECT_NEAR(law.coupling(z).value, 0.25 * some_law().coupling(z).value, 1e-12);
+    EXPECT_NEAR(law.axial(z).slope, 0.25 * test::compressible_cup().axial(z).slope, 1e-12);
+    EXPECT_NEAR(law.coupling(z).value, 0.25 * test::compressible_cup().coupling(z).value, 1e-12);
   }
 }
 
