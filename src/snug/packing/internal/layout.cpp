@@ -110,11 +110,7 @@ void Layout::add(const Block& block) {
   columns_.push_back(std::max(0.0, block.z2 - below / area));
   blocks_.push_back(block);
   has_obstacles_ |= block.is_obstacle;
-  by_axis_.x1.push_back(block.x1);
-  by_axis_.y1.push_back(block.y1);
-  by_axis_.x2.push_back(block.x2);
-  by_axis_.y2.push_back(block.y2);
-  by_axis_.z2.push_back(block.z2);
+  table_.add(face, block.z2);
   if (block.capacity != Block::kNoLimit && !has_limits_) {
     has_limits_ = true;
     loads_.assign(blocks_.size() - 1, 0.0);
@@ -136,8 +132,8 @@ void Layout::add(const Block& block) {
   if (std::find(levels_.begin(), levels_.end(), level) == levels_.end()) open_level(level);
 }
 
-void Layout::cut(std::vector<Rectangle>& areas, const Rectangle& hole) const {
-  std::vector<Rectangle> fresh;
+void Layout::cut(std::vector<Rectangle>& areas, const Rectangle& hole) {
+  std::vector<Rectangle>& fresh = spare_.fresh;
   std::size_t kept = 0;
   const int side = std::max(1, rules_.min_side);
   for (const Rectangle& a : areas) {
@@ -159,13 +155,13 @@ void Layout::cut(std::vector<Rectangle>& areas, const Rectangle& hole) const {
     }
     if (!inside) areas.push_back(fresh[i]);
   }
+  fresh.clear();
 }
 
 void Layout::split_spaces(const Rectangle& hole, int top) {
   // Spaces of one level stand together, in the order of levels_.
-  std::vector<Space> all;
-  all.reserve(spaces_.size() + 8);
-  std::vector<Rectangle> areas;
+  std::vector<Space>& all = spare_.spaces;
+  std::vector<Rectangle>& areas = spare_.areas;
   for (std::size_t begin = 0; begin < spaces_.size();) {
     std::size_t end = begin;
     bool touched = false;
@@ -175,48 +171,31 @@ void Layout::split_spaces(const Rectangle& hole, int top) {
       all.insert(all.end(), spaces_.begin() + static_cast<std::ptrdiff_t>(begin),
                  spaces_.begin() + static_cast<std::ptrdiff_t>(end));
     } else {
-      areas.clear();
       for (std::size_t i = begin; i < end; ++i) areas.push_back(spaces_[i].area);
       cut(areas, hole);
       for (const Rectangle& area : areas) all.push_back({level, area, is_supported(level, area)});
+      areas.clear();
     }
     begin = end;
   }
   spaces_.swap(all);
+  all.clear();
 }
 
 void Layout::open_level(int level) {
   levels_.push_back(level);
-  std::vector<Rectangle> areas{{0, 0, rules_.size_x, rules_.size_y}};
+  std::vector<Rectangle>& areas = spare_.areas;
+  areas.push_back({0, 0, rules_.size_x, rules_.size_y});
   const int m = rules_.margin;
   for (const Block& b : blocks_) {
     if (b.z2 > level) cut(areas, {b.x1 - m, b.y1 - m, b.x2 + m, b.y2 + m});
   }
   for (const Rectangle& area : areas) spaces_.push_back({level, area, is_supported(level, area)});
+  areas.clear();
 }
 
 bool Layout::is_supported(int level, const Rectangle& area) const {
-  if (level == 0) return true;
-  return std::any_of(blocks_.begin(), blocks_.end(), [&](const Block& b) {
-    return b.z2 <= level && level - b.z2 <= rules_.level_slack && overlaps(area, footprint(b));
-  });
-}
-
-int Layout::highest_under(const Rectangle& area) const {
-  // Without branches, so that compilers make vector code of it: nine tenths of all time were spent here and in settle.
-  const std::size_t count = blocks_.size();
-  const int* const x1 = by_axis_.x1.data();
-  const int* const y1 = by_axis_.y1.data();
-  const int* const x2 = by_axis_.x2.data();
-  const int* const y2 = by_axis_.y2.data();
-  const int* const z2 = by_axis_.z2.data();
-  int highest = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const int under = (x1[i] < area.x2) & (area.x1 < x2[i]) & (y1[i] < area.y2) & (area.y1 < y2[i]);
-    const int top = z2[i] & -under;
-    highest = highest > top ? highest : top;
-  }
-  return highest;
+  return level == 0 || table_.area_held(area, level, rules_.level_slack) > 0;
 }
 
 Refusal Layout::settle(const Piece& piece, int orientation, int x, int y, CandidatePose& pose) const {
@@ -225,15 +204,12 @@ Refusal Layout::settle(const Piece& piece, int orientation, int x, int y, Candid
   const int margin = rules_.margin;
   if (x < margin || y < margin || face.x2 > rules_.size_x - margin || face.y2 > rules_.size_y - margin)
     return Refusal::Outside;
-  const int base = highest_under({x - margin, y - margin, face.x2 + margin, face.y2 + margin});
+  const int base = table_.highest_under({x - margin, y - margin, face.x2 + margin, face.y2 + margin});
   if (base + s.height > rules_.size_z) return Refusal::Height;
   double support = 1.0;
   if (base > 0) {
-    std::int64_t held = 0;
-    for (const Block& b : blocks_) {
-      if (b.z2 <= base && base - b.z2 <= rules_.level_slack) held += shared_area(face, b);
-    }
-    support = static_cast<double>(held) / (static_cast<double>(s.width) * s.depth);
+    support = static_cast<double>(table_.area_held(face, base, rules_.level_slack)) /
+              (static_cast<double>(s.width) * s.depth);
   }
   pose = {x, y, base, orientation, support};
   if (has_obstacles_ && rests_on_obstacle(face, base)) return Refusal::Support;

@@ -4,17 +4,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "snug/packing/internal/block_table.hpp"
+
 namespace snug::packing::internal {
 
 /// Lengths are integers in tenths of a millimetre: sums are exact and equal on every machine. Origin: the corner of the
 /// inner floor where Tx and Ty are smallest.
 inline constexpr int kTicksPerMillimetre = 10;
 inline constexpr double kTicksPerMetre = 10000.0;
-
-struct Rectangle {
-  int x1 = 0, y1 = 0, x2 = 0, y2 = 0;
-  bool operator==(const Rectangle&) const = default;
-};
 
 /// An upright box that stands in the container.
 struct Block {
@@ -96,6 +93,7 @@ class Layout {
   int find_poses(const Piece& piece, CandidatePoseList& list, Refusal* worst = nullptr) const;
 
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
+  [[nodiscard]] const BlockTable& table() const { return table_; }
   [[nodiscard]] const Rules& rules() const { return rules_; }
   /// Mean height under the top of each block that is filled or lost and not under a block below it, ticks; parallel to
   /// blocks(): what a footprint covers of each, added up, is what is filled under it.
@@ -108,10 +106,9 @@ class Layout {
     bool supported = false;
   };
 
-  [[nodiscard]] int highest_under(const Rectangle& area) const;
   void split_spaces(const Rectangle& hole, int top);
   void open_level(int level);
-  void cut(std::vector<Rectangle>& areas, const Rectangle& hole) const;
+  void cut(std::vector<Rectangle>& areas, const Rectangle& hole);
   [[nodiscard]] bool is_supported(int level, const Rectangle& area) const;
   [[nodiscard]] bool is_balanced(const Rectangle& face, int base, int com_x, int com_y) const;
   [[nodiscard]] bool carries(const Rectangle& face, int base, int mass) const;
@@ -120,15 +117,17 @@ class Layout {
 
   Rules rules_;
   std::vector<Block> blocks_;
-  struct Columns {  ///< the same by coordinate, for the innermost loop
-    std::vector<int> x1, y1, x2, y2, z2;
-  } by_axis_;
+  BlockTable table_;  ///< the same by coordinate
   std::vector<double> columns_;
   std::vector<double> loads_;  ///< g on each block; kept only when a block has a limit
   bool has_limits_ = false;
   bool has_obstacles_ = false;
   std::vector<Space> spaces_;
   std::vector<int> levels_;
+  struct {
+    std::vector<Space> spaces;
+    std::vector<Rectangle> areas, fresh;
+  } spare_;  ///< memory of add(); empty between calls
 };
 
 }  // namespace snug::packing::internal

@@ -10,40 +10,29 @@ namespace {
 
 constexpr int kTouch = 30;  ///< ticks: nearer boxes count as touching
 
-struct Surroundings {
-  std::array<int, 4> gap{};  ///< low x, high x, low y, high y
-  double contact = 0.0;      ///< ticks^2 of side faces that touch
-  double flush = 0.0;        ///< ticks of side length where the neighbour's top is level with ours
-  double below = 0.0;        ///< ticks^3 under the piece that are filled or lost already
-};
-
-Surroundings look_round(const Layout& layout, const Block& me) {
-  const Rules& rules = layout.rules();
-  Surroundings s;
-  s.gap = {me.x1, rules.size_x - me.x2, me.y1, rules.size_y - me.y2};
-  const int height = me.z2 - me.z1;
-  const int lengths[4] = {me.y2 - me.y1, me.y2 - me.y1, me.x2 - me.x1, me.x2 - me.x1};
-  for (int side = 0; side < 4; ++side) {
-    if (s.gap[static_cast<std::size_t>(side)] <= kTouch) s.contact += static_cast<double>(lengths[side]) * height;
-  }
+/// Ticks^3 under a box that are filled or lost already.
+double filled_below(const Layout& layout, const Block& me) {
+  if (me.z1 == 0) return 0.0;
+  double below = 0.0;
   for (std::size_t i = 0; i < layout.blocks().size(); ++i) {
     const Block& b = layout.blocks()[i];
     const int ox = std::min(me.x2, b.x2) - std::max(me.x1, b.x1);
     const int oy = std::min(me.y2, b.y2) - std::max(me.y1, b.y1);
-    if (ox > 0 && oy > 0) {
-      s.below += layout.columns()[i] * ox * oy;
-      continue;
-    }
-    const int over = b.z2 - me.z1;
-    if (over <= kTouch || (ox <= 0 && oy <= 0)) continue;
-    const std::size_t side = oy > 0 ? (b.x1 < me.x1 ? 0U : 1U) : (b.y1 < me.y1 ? 2U : 3U);
-    const int gap = oy > 0 ? -ox : -oy;
-    const int along = oy > 0 ? oy : ox;
-    s.gap[side] = std::min(s.gap[side], gap);
-    if (gap > kTouch) continue;
-    s.contact += static_cast<double>(along) * std::min(over, height);
-    if (std::abs(b.z2 - me.z2) <= kTouch) s.flush += along;
+    if (ox > 0 && oy > 0) below += layout.columns()[i] * ox * oy;
   }
+  return below;
+}
+
+BlockTable::Beside look_beside(const Layout& layout, const Block& me) {
+  const Rules& rules = layout.rules();
+  BlockTable::Beside s;
+  s.gap = {me.x1, rules.size_x - me.x2, me.y1, rules.size_y - me.y2};
+  const int height = me.z2 - me.z1;
+  const int lengths[4] = {me.y2 - me.y1, me.y2 - me.y1, me.x2 - me.x1, me.x2 - me.x1};
+  for (int side = 0; side < 4; ++side) {
+    if (s.gap[static_cast<std::size_t>(side)] <= kTouch) s.contact += std::int64_t{lengths[side]} * height;
+  }
+  layout.table().look_beside({me.x1, me.y1, me.x2, me.y2}, me.z1, me.z2, kTouch, s);
   return s;
 }
 
@@ -109,21 +98,22 @@ Features see(const Layout& layout, const Policy& policy, const Piece& piece, con
   const Block me = Layout::block_at(piece, pose);
   const double width = me.x2 - me.x1, depth = me.y2 - me.y1, height = me.z2 - me.z1;
   const double area = width * depth;
-  const Surroundings s = look_round(layout, me);
+  const BlockTable::Beside s = look_beside(layout, me);
+  const double contact = static_cast<double>(s.contact);
   const double room = static_cast<double>(rules.size_x) * rules.size_y * rules.size_z;
   Features f{};
   f[Base] = static_cast<double>(me.z1) / rules.size_z;
   f[Top] = static_cast<double>(me.z2) / rules.size_z;
-  f[Buried] = 10.0 * std::max(0.0, area * me.z1 - s.below) / room;
+  f[Buried] = 10.0 * std::max(0.0, area * me.z1 - filled_below(layout, me)) / room;
   const double side = policy.sides.waste(s.gap[0]) * depth + policy.sides.waste(s.gap[1]) * depth +
                       policy.sides.waste(s.gap[2]) * width + policy.sides.waste(s.gap[3]) * width;
   f[SideWaste] = 10.0 * side * height / room;
   f[HeightWaste] = 10.0 * policy.heights.waste(rules.size_z - me.z2) * area / room;
-  f[Contact] = s.contact / (2.0 * (width + depth) * height);
-  f[Flush] = s.flush / (2.0 * (width + depth));
+  f[Contact] = contact / (2.0 * (width + depth) * height);
+  f[Flush] = static_cast<double>(s.flush) / (2.0 * (width + depth));
   f[Support] = pose.support;
   f[Footprint] = 10.0 * area / (static_cast<double>(rules.size_x) * rules.size_y);
-  f[Touch] = (s.contact + pose.support * area) / (2.0 * (area + (width + depth) * height));
+  f[Touch] = (contact + pose.support * area) / (2.0 * (area + (width + depth) * height));
   for (const int gap : s.gap) f[Sliver] += gap > kTouch && gap < rules.min_side ? 1.0 : 0.0;
   return f;
 }

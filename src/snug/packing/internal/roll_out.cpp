@@ -20,8 +20,10 @@ constexpr int kChoiceFutures = 12;  ///< that policies meet before one is chosen
 constexpr double kChoiceEffort = 0.15;  ///< fraction of the effort that choosing may take
 
 /// The rest of a roll-out that has placed `volume` m^3.
-double go_on(Layout layout, double volume, const Policy& policy, const Prospect& prospect, std::span<const int> future,
-             int skips, RollOutWork& work) {
+double go_on(const Layout& start, double volume, const Policy& policy, const Prospect& prospect,
+             std::span<const int> future, int skips, RollOutWork& work) {
+  work.layout = start;
+  Layout& layout = *work.layout;
   CandidatePose pose;
   for (const int kind : future) {
     const Piece& piece = prospect.kinds[static_cast<std::size_t>(kind)];
@@ -137,9 +139,9 @@ bool choose(const Layout& layout, const Policy& policy, const Piece& piece, Roll
   return found;
 }
 
-double roll_out(Layout layout, const Policy& policy, const Prospect& prospect, const Future& future, int skips,
+double roll_out(const Layout& layout, const Policy& policy, const Prospect& prospect, const Future& future, int skips,
                 RollOutWork& work) {
-  return go_on(std::move(layout), 0.0, policy, prospect, future, skips, work);
+  return go_on(layout, 0.0, policy, prospect, future, skips, work);
 }
 
 RollOutTree::RollOutTree(Layout start, std::size_t most_steps) : most_steps_(most_steps) {
@@ -258,7 +260,7 @@ std::size_t choose_policy(const Layout& layout, const Piece& piece, const std::v
       if (!choose(layout, policies[p], piece, work, pose)) return 0;
       Layout next = layout;
       next.add(Layout::block_at(piece, pose));
-      sums[p] += roll_out(std::move(next), policies[p], prospect, future, settings.skips, work);
+      sums[p] += roll_out(next, policies[p], prospect, future, settings.skips, work);
     }
     if (static_cast<double>(work.looked_at) * (i + 2.0) / (i + 1.0) > most) break;
   }

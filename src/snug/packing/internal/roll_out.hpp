@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -27,7 +28,8 @@ using Future = std::vector<int>;  ///< indices of kinds, in the order in which t
 /// Scratch of one thread.
 struct RollOutWork {
   CandidatePoseList list;
-  std::int64_t looked_at = 0;  ///< places, in all roll-outs: the unit in which effort is counted
+  std::optional<Layout> layout;  ///< of the present roll-out: keeps its memory from one to the next
+  std::int64_t looked_at = 0;    ///< places, in all roll-outs: the unit in which effort is counted
 };
 
 /// The pose of least cost; false when there is none.
@@ -35,8 +37,8 @@ struct RollOutWork {
                           CandidatePose& best);
 
 /// Volume in m^3 that gets in before more items than `skips` did not fit.
-[[nodiscard]] double roll_out(Layout layout, const Policy& policy, const Prospect& prospect, const Future& future,
-                              int skips, RollOutWork& work);
+[[nodiscard]] double roll_out(const Layout& layout, const Policy& policy, const Prospect& prospect,
+                              const Future& future, int skips, RollOutWork& work);
 
 /// Roll-outs of many futures from one layout: steps with which futures begin alike are taken once, and their places
 /// counted each time. Each roll-out keeps one more step, so that steps are kept where futures come by again.
