@@ -25,10 +25,10 @@ def find_program(folder, sequence, is_real):
     return next((folder / name for name in names if (folder / name).is_file()), None)
 
 
-def run(program, sequence):
+def run(program, sequence, *more):
     """What `snug simulate --json` says of a program, or an explanation why there is nothing."""
     words = [SNUG, "simulate", str(ROOT / "scenarios" / "box-demonstrator.yaml"), "--program", str(program),
-             "--sequence", sequence, "--json"]
+             "--sequence", sequence, "--json", *more]
     result = subprocess.run(words, capture_output=True, text=True, check=False)
     if not result.stdout:
         return None, result.stderr.strip().splitlines()[-1] if result.stderr.strip() else f"exit code {result.returncode}"

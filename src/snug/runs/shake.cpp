@@ -16,6 +16,7 @@ namespace snug::runs {
 namespace {
 
 constexpr double kSettle = 0.5;           ///< s
+constexpr double kStep = 2.0;             ///< times the scenario's, unless it is said
 constexpr double kFilmStiffness = 2.0e3;  ///< N/m, a box
 constexpr double kFilmForce = 150.0;      ///< N, a box
 constexpr double kStrapForce = 600.0;     ///< N, all together
@@ -30,7 +31,7 @@ model::Scenario travelling(model::Scenario scenario, const std::vector<model::Pl
   scenario.aligner.reset();
   scenario.drops.reset();
   scenario.solver.sleep.enabled = false;  // what drives it begins while it is at rest
-  scenario.time_step = time_step.value_or(scenario.time_step * scenario.rehearsal.coarse_steps);
+  scenario.time_step = time_step.value_or(kStep * scenario.time_step);
   const auto scale = [friction](model::ContactParams& params) {
     params.friction *= friction;
     if (params.edge_friction) *params.edge_friction *= friction;

@@ -26,7 +26,7 @@ struct ShakeOptions {
   std::uint64_t seed = 1;                ///< of the draws
   double shift = 0.020;                  ///< m, that a box may move at any time from where it stood
   double tilt = 0.105;                   ///< rad, that it may tip
-  std::optional<double> time_step = {};  ///< s; absent: the scenario's times rehearsal.coarse_steps
+  std::optional<double> time_step = {};  ///< s; absent: twice the scenario's
   int threads = 1;                       ///< results do not depend on it
 };
 
