@@ -13,6 +13,9 @@
 namespace snug::planning {
 namespace {
 
+/// Times the scenario's: 0.1 mm/s by default. What is drawn for a world moves boxes by far more.
+constexpr double kCoarseTolerance = 10.0;
+
 /// Without boxes and orders that do not come: they would take time and change what is drawn of those that do.
 model::Scenario order_alone(model::Scenario scenario, const std::string& sequence) {
   std::unordered_set<std::string> wanted;
@@ -30,10 +33,15 @@ std::vector<World> draw_worlds(const model::Scenario& scenario, const std::strin
   const Rng rng(seed);
   const model::Scenario nominal = cell::with_fixed_arrivals(order_alone(scenario, sequence), sequence);
   const double longest = scenario.rehearsal.coarse_steps * scenario.time_step;
-  std::vector<World> worlds{{model::with_time_step(nominal, longest), {}, 1.0}};
+  const auto coarse = [longest](const model::Scenario& fine) {
+    model::Scenario result = model::with_time_step(fine, longest);
+    result.solver.tolerance *= kCoarseTolerance;
+    return result;
+  };
+  std::vector<World> worlds{{coarse(nominal), {}, 1.0}};
   for (int i = 0; i < samples; ++i) {
     const Rng own = rng.split("sample " + std::to_string(i));
-    worlds.push_back({model::with_time_step(cell::draw_scenario(nominal, sequence, own), longest), {}, 1.0});
+    worlds.push_back({coarse(cell::draw_scenario(nominal, sequence, own)), {}, 1.0});
   }
   const std::size_t items = cell::require_sequence(worlds[0].scenario, sequence).items.size();
   for (World& world : worlds) world.X_WP.resize(items);

@@ -101,7 +101,8 @@ struct BeliefSnapshot {
 [[nodiscard]] std::uint64_t hash(const BeliefSnapshot& belief);
 
 /// Worlds as they are before anything was seen: the nominal one and `samples` that are drawn from the scenario's
-/// uncertainty by the seed. Physics steps are `rehearsal.coarse_steps` times as long. No item is there.
+/// uncertainty by the seed. Physics steps are `rehearsal.coarse_steps` times as long, solved to ten times the
+/// tolerance. No item is there.
 [[nodiscard]] std::vector<World> draw_worlds(const model::Scenario& scenario, const std::string& sequence,
                                              std::uint64_t seed, int samples);
 /// Obstacles become static bodies of the world, in the place of those that it had.
