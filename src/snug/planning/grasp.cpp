@@ -68,6 +68,10 @@ class GraspPlanner {
     if (!applies || nominal_ == nullptr) return applies;
     if (is_fine() && !grasp_.episodes[0].is_complete()) grasp_.problem = GraspProblem::Rollout;
     if (is_fine()) run_samples();
+    if (is_fine() && is_heavy() && !holds_enough(0)) grasp_.problem = GraspProblem::TooHeavy;
+    if (is_fine() && is_heavy() && grasp_.success_rate < request_.scenario.rehearsal.least_rate) {
+      grasp_.problem = GraspProblem::TooHeavy;
+    }
     return true;
   }
   [[nodiscard]] Grasp take() { return std::move(grasp_); }
@@ -84,6 +88,13 @@ class GraspPlanner {
     return request_.layout.X_WT * Pose{packing::rotation(grasp_.held_as), Vector3::Zero()};
   }
   [[nodiscard]] bool is_first() const { return request_.location == Location::Aligner; }
+
+  /// It is carried more slowly than others.
+  [[nodiscard]] bool is_heavy() const { return request_.layout.is_fast && grasp_.swing && grasp_.swing->pace < 1.0; }
+  /// In this world the cup held as many times its load as it has to.
+  [[nodiscard]] bool holds_enough(std::size_t world) const {
+    return request_.rollouts[world]->state().gripper.least_hold_factor >= request_.scenario.place_limits.hold_factor;
+  }
 
   /// Where the tool is.
   [[nodiscard]] const motion::Waypoint& last() const {
@@ -296,7 +307,8 @@ class GraspPlanner {
       grasp_.states.push_back(rollout.state());
       if (i == 0) continue;
       const std::optional<Pose> X_WP = rollout.pose_of(request_.box.item);
-      const bool is_good = rollout.is_held(request_.box.item) && X_WP && angle_between(X_WP->R, R_WP) < max_lean();
+      const bool is_good = rollout.is_held(request_.box.item) && X_WP && angle_between(X_WP->R, R_WP) < max_lean() &&
+                           (!is_heavy() || holds_enough(i));
       all += request_.weights[i];
       if (is_good) good += request_.weights[i];
     }
@@ -337,6 +349,8 @@ const char* describe(GraspProblem problem) {
       return "nothing flat to turn it on";
     case GraspProblem::Rollout:
       return "the nominal rollout ended early";
+    case GraspProblem::TooHeavy:
+      return "the cup would hold too few times the box's weight while it is lifted";
   }
   return "";
 }

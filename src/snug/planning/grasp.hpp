@@ -25,6 +25,7 @@ enum class GraspProblem {
   DoesNotStand,  ///< where it was put down
   NoSurface,     ///< nothing flat to turn it on, or every way of turning it was refused
   Rollout,       ///< the nominal rollout ended early: see its episode
+  TooHeavy,      ///< of a box that is heavy for the cup, in too many worlds: it would hold too little when lifted
 };
 [[nodiscard]] const char* describe(GraspProblem problem);
 

@@ -116,7 +116,7 @@ struct JsonForm<motion::Tracking> {
 template <>
 struct JsonEnum<skills::InsertionSkill> {
   static constexpr std::array all{skills::InsertionSkill::TopDown, skills::InsertionSkill::SlideToContact,
-                                  skills::InsertionSkill::Tilted};
+                                  skills::InsertionSkill::Tilted, skills::InsertionSkill::SlideOnSupport};
 };
 
 template <>

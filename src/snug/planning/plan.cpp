@@ -169,11 +169,24 @@ class Planner {
     plan_.rehearsal_seconds += seconds_since(start);
   }
 
+  /// A box that is carried more slowly than others is pushed while its support carries it: where a push beside its
+  /// weight is too much for the cup only so, else where the other ways failed.
+  std::vector<skills::Insertion> insertions_for(const packing::Candidate& placed, const skills::PlannedBox& box) const {
+    const model::Scenario& nominal = belief_.nominal();
+    const settings::InsertionParams& params = scene_.rules().skills.insertion;
+    std::vector<skills::Insertion> insertions = skills::choose_insertions(placed, box.size, params);
+    const Vector3 up_P = placed.placement.X_TP.R.row(2).transpose();
+    if (!scene_.cell.layout.is_fast || skills::pace_of(nominal, box, up_P) >= 1.0) return insertions;
+    if (!skills::may_push_hanging(nominal, box, up_P)) insertions.clear();
+    for (const skills::Insertion& one : skills::choose_insertions_on_support(placed, params)) insertions.push_back(one);
+    return insertions;
+  }
+
   void try_insertions(const packing::Candidate& candidate, double cost, Rehearsal& rehearsal, int before) {
     const settings::InsertionParams& params = scene_.rules().skills.insertion;
     const packing::Candidate placed = skills::measured(scene_.container_state(plan_.item), candidate,
                                                        plan_.standing.size, belief_.nominal().parcel_clearance, params);
-    for (const skills::Insertion& insertion : skills::choose_insertions(placed, rehearsal.box().size, params)) {
+    for (const skills::Insertion& insertion : insertions_for(placed, rehearsal.box())) {
       if (is_enough(plan_.attempts - before)) return;
       Attempt attempt = rehearsal.attempt(placed, insertion, scene_.packed_top(plan_.item));
       if (attempt.failure == AttemptFailure::SentBefore) {

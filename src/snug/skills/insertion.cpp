@@ -26,6 +26,35 @@ AxisView view(const packing::Candidate& candidate, int axis) {
   return {candidate.side_gap[low], candidate.side_gap[high], candidate.side_height[low], candidate.side_height[high]};
 }
 
+/// Straight down, away from neighbours on one side, then against them.
+struct Approach {
+  Insertion base;       ///< top-down or slide to contact
+  int tight_axis = -1;  ///< with near neighbours on both sides; of two the tighter one
+};
+
+Approach approach_to(const packing::Candidate& candidate, const settings::InsertionParams& params) {
+  Approach approach;
+  Insertion& base = approach.base;
+  int& tight_axis = approach.tight_axis;
+  for (int axis = 0; axis < 2; ++axis) {
+    const AxisView v = view(candidate, axis);
+    if (v.low_near(params) && v.high_near(params)) {
+      if (tight_axis < 0 || view(candidate, tight_axis).low + view(candidate, tight_axis).high > v.low + v.high) {
+        tight_axis = axis;
+      }
+    } else if (v.low_near(params) && v.high > params.slide_room) {
+      base.come_from_T[axis] = std::clamp(v.high - params.slide_margin, 0.0, params.slide_start);
+      base.overtravel_T[axis] = -params.overtravel;
+      base.skill = InsertionSkill::SlideToContact;
+    } else if (v.high_near(params) && v.low > params.slide_room) {
+      base.come_from_T[axis] = -std::clamp(v.low - params.slide_margin, 0.0, params.slide_start);
+      base.overtravel_T[axis] = params.overtravel;
+      base.skill = InsertionSkill::SlideToContact;
+    }
+  }
+  return approach;
+}
+
 }  // namespace
 
 const char* name_of(InsertionSkill skill) {
@@ -36,32 +65,15 @@ const char* name_of(InsertionSkill skill) {
       return "slide to contact";
     case InsertionSkill::Tilted:
       return "tilted";
+    case InsertionSkill::SlideOnSupport:
+      return "slide on support";
   }
   return "";
 }
 
 std::vector<Insertion> choose_insertions(const packing::Candidate& candidate, const Vector3& size,
                                          const settings::InsertionParams& params) {
-  Insertion base;
-  int tight_axis = -1;
-  bool slides = false;
-  for (int axis = 0; axis < 2; ++axis) {
-    const AxisView v = view(candidate, axis);
-    if (v.low_near(params) && v.high_near(params)) {
-      if (tight_axis < 0 || view(candidate, tight_axis).low + view(candidate, tight_axis).high > v.low + v.high) {
-        tight_axis = axis;
-      }
-    } else if (v.low_near(params) && v.high > params.slide_room) {
-      base.come_from_T[axis] = std::clamp(v.high - params.slide_margin, 0.0, params.slide_start);
-      base.overtravel_T[axis] = -params.overtravel;
-      slides = true;
-    } else if (v.high_near(params) && v.low > params.slide_room) {
-      base.come_from_T[axis] = -std::clamp(v.low - params.slide_margin, 0.0, params.slide_start);
-      base.overtravel_T[axis] = params.overtravel;
-      slides = true;
-    }
-  }
-  base.skill = slides ? InsertionSkill::SlideToContact : InsertionSkill::TopDown;
+  const auto [base, tight_axis] = approach_to(candidate, params);
   std::vector<Insertion> insertions{base};
   if (tight_axis >= 0) {
     const AxisView v = view(candidate, tight_axis);
@@ -81,13 +93,20 @@ std::vector<Insertion> choose_insertions(const packing::Candidate& candidate, co
     tilted.push_T[tight_axis] = -tilted.push_T[tight_axis];
     tilted.come_from_T[tight_axis] = -tilted.come_from_T[tight_axis];
     insertions.push_back(tilted);
-  } else if (slides) {
+  } else if (base.skill == InsertionSkill::SlideToContact) {
     Insertion gentle = base;
     gentle.overtravel_T *= params.gentle;
     gentle.gentle = true;
     insertions.push_back(gentle);
   }
   return insertions;
+}
+
+std::vector<Insertion> choose_insertions_on_support(const packing::Candidate& candidate,
+                                                    const settings::InsertionParams& params) {
+  Insertion one = approach_to(candidate, params).base;
+  if (one.skill == InsertionSkill::SlideToContact) one.skill = InsertionSkill::SlideOnSupport;
+  return {one};
 }
 
 }  // namespace snug::skills

@@ -13,6 +13,7 @@ enum class InsertionSkill {
   TopDown,         ///< straight down
   SlideToContact,  ///< beside its place, then pushed against its neighbours
   Tilted,          ///< one side first, levelled while it is pushed
+  SlideOnSupport,  ///< set down beside its place, then pushed while what is below carries it
 };
 [[nodiscard]] const char* name_of(InsertionSkill skill);
 
@@ -29,5 +30,9 @@ struct Insertion {
 /// Insertions worth trying for a candidate, the most promising first; never empty.
 [[nodiscard]] std::vector<Insertion> choose_insertions(const packing::Candidate& candidate, const Vector3& size,
                                                        const settings::InsertionParams& params);
+/// The same for a box that is heavy for its cup: nothing beside it is touched while it hangs from the cup alone.
+/// Never empty.
+[[nodiscard]] std::vector<Insertion> choose_insertions_on_support(const packing::Candidate& candidate,
+                                                                  const settings::InsertionParams& params);
 
 }  // namespace snug::skills

@@ -42,6 +42,9 @@ Dip find_dip(const CellLayout& layout, const Pose& X_WE_from, const Pose& X_WE_t
   return dip;
 }
 
+/// Of the tempo, chosen: 10 mm in a second. A box of 6 kg that is let go at the fastest then bounces by 0.7 m/s2.
+constexpr double kPaceOfTakingWeight = 0.1;
+
 constexpr int kRaises = 4;           ///< rounds in which an end of a way is raised until nothing is met on it
 constexpr double kLeastLever = 0.3;  ///< of a raised end, where the way is lowest
 
@@ -117,7 +120,19 @@ double turn_between(const CellLayout& layout, const Pose& X_WP, const Pose& X_WP
 std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const CellLayout& layout,
                                         const PlannedBox& box, const Pose& X_WP, const Pose& X_WP_next, double travel,
                                         PickKind kind) {
-  return pick_rows(pick_intent(scenario, layout, box, X_WP, X_WP_next, travel, kind));
+  PickIntent intent = pick_intent(scenario, layout, box, X_WP, X_WP_next, travel, kind);
+  int up = 0;
+  X_WP.R.row(2).cwiseAbs().maxCoeff(&up);
+  const Vector3 up_P = std::copysign(1.0, X_WP.R(2, up)) * Vector3::Unit(up);
+  if (!layout.is_fast || may_push_hanging(scenario, box, up_P)) return pick_rows(intent);
+  // What the box stands on lets it go while the tool moves: it starts at the tool's speed, and bounces. So the cup
+  // takes the weight slowly.
+  intent.slow_lift = box.inertia.mass * scenario.gravity.norm() / scenario.cup.stiffness.axial;
+  std::vector<motion::Waypoint> rows = pick_rows(intent);
+  motion::Swing slow = swing_of(scenario, box, up_P);
+  slow.pace = kPaceOfTakingWeight;
+  rows[rows.size() - 2].swing = motion::as_named(slow);
+  return rows;
 }
 
 Pose tool_before_pick(const model::Scenario& scenario, const CellLayout& layout, const PlannedBox& box,
@@ -143,13 +158,24 @@ double still_hold_factor(const model::Scenario& scenario, const PlannedBox& box)
   return most;
 }
 
+bool may_push_hanging(const model::Scenario& scenario, const PlannedBox& box, const Vector3& up_P) {
+  constexpr double kMargin = 1.25;  ///< chosen: the tool needs a way to stop
+  const SpatialInertia box_S = cup::box_below_lip(scenario.cup, box.inertia, box.size, up_P);
+  const motion::FastSettings fast;
+  const double still = cup::carried_hold_factor(scenario.cup, box_S, {0.0, 0.0, -scenario.gravity.norm()});
+  return std::min(fast.felt_hold, fast.felt_hold_share * still) >= kMargin * scenario.place_limits.hold_factor;
+}
+
 double pace_of(const model::Scenario& scenario, const PlannedBox& box, const Vector3& up_P) {
-  constexpr double kMargin = 1.05;    ///< chosen, over what a rehearsal asks for
-  constexpr double kLeast = 0.3;      ///< chosen
+  constexpr double kMargin = 1.05;  ///< chosen, over what a rehearsal asks for
+  /// The same where the cup carries little more than the weight: masses and centres of mass are not known better.
+  constexpr double kMarginOfHeaviest = 1.25;
+  constexpr double kLeast = 0.2;      ///< chosen
   constexpr double kStep = 0.05;      ///< of the search
   constexpr double kOvershoot = 2.0;  ///< of the lift: its smoothing is shorter than a heavy box bounces; 1.9 with 6 kg
   const SpatialInertia box_S = cup::box_below_lip(scenario.cup, box.inertia, box.size, up_P);
-  const double gravity = scenario.gravity.norm(), asked = kMargin * scenario.place_limits.hold_factor;
+  const double margin = may_push_hanging(scenario, box, up_P) ? kMargin : kMarginOfHeaviest;
+  const double gravity = scenario.gravity.norm(), asked = margin * scenario.place_limits.hold_factor;
   const motion::FastSettings fast;
   const auto holds = [&](double pace) {
     const double square = pace * pace;
@@ -181,7 +207,7 @@ std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::W
         last, with_detaching(layout, rows), {layout.neutral_yaw, layout.travel.sure_turn, true, layout.pan_axis});
     for (motion::Waypoint& row : turned) {
       const bool hangs = !motion::is_contact(row.motion_class) || row.motion_class == MotionClass::Place;
-      if (swing && row.io.vacuum && hangs) row.swing = motion::as_named(*swing);
+      if (swing && !row.swing && row.io.vacuum && hangs) row.swing = motion::as_named(*swing);
     }
     return turned;
   }
@@ -357,6 +383,18 @@ std::vector<motion::Waypoint> plan_place(const model::Scenario& scenario, const 
     entry.push = R_WT * request.insertion.push_T;
     entry.edge_height = layout.X_WT.p.z() + request.insertion.edge_height_T;
     intent.tilted = entry;
+  }
+  if (request.insertion.skill == InsertionSkill::SlideOnSupport) {
+    // From where it hangs down to where the cup would carry nothing of it, and beyond: the support gives way as well.
+    const Pose X_WE_unloaded =
+        intent.X_WP * request.X_PS * Pose{Matrix3::Identity(), Vector3(0.0, 0.0, -scenario.cup.hold_length)};
+    intent.lowered = intent.tool_for(intent.X_WP).p.z() - X_WE_unloaded.p.z() + intent.params.press;
+    // So far the tool leads the box when the push is felt.
+    const double lead = motion::FastSettings().push_force / scenario.cup.stiffness.lateral;
+    for (int axis = 0; axis < 2; ++axis) {
+      if (request.insertion.overtravel_T[axis] == 0.0) continue;
+      intent.overtravel += std::copysign(lead, request.insertion.overtravel_T[axis]) * R_WT.col(axis);
+    }
   }
   if (!layout.is_fast) return place_rows(intent);
   intent.entry_bottom = intent.X_WP.p.z() + lowest_corner(intent.X_WP.R, intent.size);  // straight down

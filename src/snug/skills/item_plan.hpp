@@ -61,10 +61,13 @@ enum class PickKind {
                                     const Pose& X_WP, double travel_bottom);
 /// How many times its weight the cup could carry of the box that hangs still, by the face by which it carries most.
 [[nodiscard]] double still_hold_factor(const model::Scenario& scenario, const PlannedBox& box);
-/// Fraction of the tempo, 0.3 to 1 in steps of 0.05, at which the cup holds the box below that face as often as
-/// PlaceLimits::hold_factor asks, and a twentieth more, while the gripper has the accelerations of motion::FastSettings
-/// (they go with the square), in the lift twice that: its end is a step for such a box. 0.3 also where it would not
-/// hold it then.
+/// Whether the cup still holds the box below that face as often as PlaceLimits::hold_factor asks, and a fourth more,
+/// when a push that ends by what is felt (motion::FastSettings) has taken from the hold what ends it.
+[[nodiscard]] bool may_push_hanging(const model::Scenario& scenario, const PlannedBox& box, const Vector3& up_P);
+/// Fraction of the tempo, 0.2 to 1 in steps of 0.05, at which the cup holds the box below that face as often as
+/// PlaceLimits::hold_factor asks, and a twentieth more (a fourth where it may not be pushed hanging), while the gripper
+/// has the accelerations of motion::FastSettings (they go with the square), in the lift twice that: its end is a step
+/// for such a box. 0.2 also where it would not hold it then.
 [[nodiscard]] double pace_of(const model::Scenario& scenario, const PlannedBox& box, const Vector3& up_P);
 /// Of the box that hangs from the face that looks along `up_P` (P axis), within TravelParams, at its pace.
 [[nodiscard]] motion::Swing swing_of(const model::Scenario& scenario, const PlannedBox& box, const Vector3& up_P);

@@ -121,8 +121,9 @@ std::vector<motion::Waypoint> pick_rows(const PickIntent& intent) {
   rows.add(intent.again ? MotionClass::PreRePick : MotionClass::PrePick, at_height(X_WE_pick, intent.approach_height),
            {});
   rows.add(intent.again ? MotionClass::RePick : MotionClass::Pick, X_WE_pick, {});
-  rows.add(intent.again ? MotionClass::PostRePick : MotionClass::PostPick, at_height(X_WE_pick, intent.lift_height),
-           kHold);
+  const MotionClass lift = intent.again ? MotionClass::PostRePick : MotionClass::PostPick;
+  if (intent.slow_lift > 0.0) rows.add(lift, at_height(X_WE_pick, X_WE_pick.p.z() + intent.slow_lift), kHold, "_off");
+  rows.add(lift, at_height(X_WE_pick, intent.lift_height), kHold);
   return rows.take();
 }
 
@@ -217,12 +218,14 @@ std::vector<motion::Waypoint> place_rows(const PlaceIntent& intent) {
     if (const auto X_WE_entry = tool_at_entry(intent)) rows.add(MotionClass::PrePlace, *X_WE_entry, kHold, "_2");
     const bool slides = !(intent.overtravel.isZero() && from.isZero());
     if (slides) {
-      rows.add(place, tool(rest + intent.params.slide_gap, from), kHold, "_down");
-      rows.add(MotionClass::PlaceSlow, tool(rest + intent.params.slide_gap, intent.overtravel), kHold, "_push");
+      const double height_of_push = intent.lowered ? rest - *intent.lowered : rest + intent.params.slide_gap;
+      rows.add(place, tool(height_of_push, from), kHold, "_down");
+      rows.add(MotionClass::PlaceSlow, tool(height_of_push, intent.overtravel), kHold, "_push");
     }
-    last = intent.overtravel;
+    // On its support the box stays where it was pushed to; hanging it would follow the tool.
+    if (!intent.lowered) last = intent.overtravel;
   }
-  const Pose X_WE_end = tool(rest - intent.params.press, 0.5 * last);
+  const Pose X_WE_end = tool(rest - intent.lowered.value_or(intent.params.press), 0.5 * last);
   rows.add(place, X_WE_end, kHold);
   rows.add(place, X_WE_end, kRelease);
   const double over = std::max(intent.travel_bottom, X_WE_end.p.z()) + intent.params.retreat;

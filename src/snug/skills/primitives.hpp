@@ -25,6 +25,7 @@ struct PickIntent {
   double approach_height = 0.2;            ///< m, z of E in W, before
   double lift_height = 0.3;                ///< m, z of E in W, after
   bool again = false;                      ///< the box was set down before: names PreRePick, RePick, PostRePick
+  double slow_lift = 0.0;                  ///< m, of the lift that is a row of its own, `_off`; 0: none
 };
 [[nodiscard]] std::vector<motion::Waypoint> pick_rows(const PickIntent& intent);
 
@@ -88,6 +89,9 @@ struct PlaceIntent {
   /// Given in the place of travel_bottom and entry_bottom, and of where the tool leaves to.
   std::optional<ToolHeights> tool_heights;
   bool gentle = false;  ///< slow rows (PlaceSlow) instead of quick ones
+  /// m, of the tool below where the box would just touch its support hanging, while it is pushed and let go: so far
+  /// that the support carries it. None: it is pushed while it hangs.
+  std::optional<double> lowered;
 };
 /// Rows PrePlace, PrePlace_2, Place ..., Place with vacuum off and blow-off on, PostPlace straight up.
 [[nodiscard]] std::vector<motion::Waypoint> place_rows(const PlaceIntent& intent);

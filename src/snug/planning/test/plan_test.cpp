@@ -87,6 +87,39 @@ TEST(Plan, SaysWhyThereIsNoPlace) {
   }
 }
 
+/// The item at the aligner has this mass in every world, kg.
+BeliefSnapshot with_mass(BeliefSnapshot belief, double mass) {
+  for (World& world : belief.worlds) {
+    auto& parcels = world.scenario.parcels;
+    SpatialInertia& inertia = std::ranges::find(parcels, belief.items[1].id, &model::Parcel::id)->inertia;
+    inertia.inertia *= mass / inertia.mass;
+    inertia.mass = mass;
+  }
+  belief.items[1].mass = mass;
+  return belief;
+}
+
+TEST(Plan, PushesABoxThatIsHeavyForItsCupWhileItsSupportCarriesIt) {
+  BeliefSnapshot belief = believed();
+  belief.agent.name = packing::name_of(packing::AgentKind::ContactAware);  // against walls
+  const Plan light = plan(with_mass(belief, 1.0), kAtAligner, kQuick);
+  ASSERT_TRUE(light.best) << light.reason;
+  EXPECT_EQ(light.best->skill, skills::InsertionSkill::SlideToContact);
+  const Plan heavy = plan(with_mass(belief, 6.0), kAtAligner, kQuick);
+  ASSERT_TRUE(heavy.best) << heavy.reason;
+  EXPECT_EQ(heavy.best->skill, skills::InsertionSkill::SlideOnSupport);
+  EXPECT_EQ(heavy.best->success_rate, 1.0);
+  for (const Tried& one : heavy.tried) {
+    if (one.was_rehearsed()) {
+      EXPECT_NE(one.skill, skills::InsertionSkill::SlideToContact);
+    }
+  }
+  const Plan heavier = plan(with_mass(belief, 7.8), kAtAligner, kQuick);
+  EXPECT_EQ(heavier.outcome, PlanOutcome::NoPlace)
+      << "it hangs with little more than is asked for, and has to be lifted";
+  EXPECT_LE(heavier.attempts, 12) << "what the lift shows is not tried again at every place";
+}
+
 TEST(Plan, RefusesAnAgentThatIsNotKnownAndOneThatNobodyAsks) {
   BeliefSnapshot belief = believed();
   belief.agent.name = "nobody";

@@ -122,6 +122,24 @@ TEST(ChooseInsertions, NeverComeFromBeyondTheGapAndPushOnlyAgainstWhatIsNear) {
   EXPECT_GT(slides, 500);
 }
 
+TEST(ChooseInsertionsOnSupport, ComeDownWhereASlideDoesAndNeverTilt) {
+  Rng rng(24);
+  int slides = 0;
+  for (int i = 0; i < 500; ++i) {
+    SCOPED_TRACE(i);
+    const packing::Candidate candidate = random_candidate(rng);
+    const Insertion hanging = insertions_of(candidate)[0];
+    const auto insertions = choose_insertions_on_support(candidate, kParams);
+    ASSERT_EQ(insertions.size(), 1U);
+    const bool is_slide = hanging.skill == InsertionSkill::SlideToContact;
+    slides += is_slide ? 1 : 0;
+    EXPECT_EQ(insertions[0].skill, is_slide ? InsertionSkill::SlideOnSupport : InsertionSkill::TopDown);
+    EXPECT_EQ(insertions[0].come_from_T, hanging.come_from_T);
+    EXPECT_EQ(insertions[0].overtravel_T, hanging.overtravel_T);
+  }
+  EXPECT_GT(slides, 100);
+}
+
 TEST(ChooseInsertions, ComeDownBesideNothingWhereTheMarginTakesAllTheRoom) {
   settings::InsertionParams params = kParams;
   params.slide_margin = 3.0 * params.slide_room;

@@ -121,6 +121,39 @@ SideScene random_side(Rng& rng) {
   return scene;
 }
 
+TEST(PlanPick, TakesTheWeightOfTheHeaviestBoxesSlowlyBeforeItLiftsThem) {
+  const model::Scenario& scenario = demonstrator();
+  CellLayout layout = layout_at(0.3);
+  const Pose X_WP{Matrix3::Identity(), Vector3(-0.4, -0.3, 0.02)};
+  for (const double mass : {0.5, 4.0, 5.0, 6.0}) {
+    SCOPED_TRACE(mass);
+    PlannedBox box = box_with(Vector3::Zero());
+    box.inertia.mass = mass;
+    EXPECT_EQ(may_push_hanging(scenario, box, Vector3::UnitZ()), mass < 4.5);
+    layout.is_fast = false;
+    EXPECT_EQ(plan_pick(scenario, layout, box, X_WP, X_WP, kTravel, PickKind::First).size(), 3U);
+    layout.is_fast = true;
+    const auto rows = plan_pick(scenario, layout, box, X_WP, X_WP, kTravel, PickKind::First);
+    if (mass < 4.5) {
+      EXPECT_EQ(rows.size(), 3U);
+      continue;
+    }
+    ASSERT_EQ(rows.size(), 4U);
+    const Vector3 lift = rows[2].X_WE.p - rows[1].X_WE.p;
+    EXPECT_NEAR((lift - Vector3(0.0, 0.0, mass * 9.81 / scenario.cup.stiffness.axial)).norm(), 0.0, 1e-9)
+        << "as far as the cup gives under it";
+    EXPECT_TRUE(rows[2].io.vacuum);
+    ASSERT_TRUE(rows[2].swing);
+    EXPECT_LT(rows[2].swing->pace, pace_of(scenario, box, Vector3::UnitZ()));
+    // Others of its rows get the pace of the way.
+    const motion::Swing swing = swing_of(scenario, box, Vector3::UnitZ());
+    const auto driven = drivable(layout, rows[0], rows, swing);
+    ASSERT_GE(driven.size(), 4U);
+    EXPECT_EQ(driven[driven.size() - 2].swing, rows[2].swing);
+    EXPECT_EQ(driven.back().swing, motion::as_named(swing));
+  }
+}
+
 TEST(PlanSidePick, PointsAtTheFaceWithTheLipOffTheGroundAndLittleOverTheUpperEdge) {
   Rng rng(43);
   const model::Scenario& scenario = demonstrator();
@@ -243,9 +276,10 @@ TEST(PaceOf, IsTheLargestAtWhichTheCupHoldsAHeavyBox) {
       const double tension = suction / (mass * (gravity + 2.0 * level));
       const double slip = friction * suction / (mass * (level + friction * gravity));
       const double peel = radius * suction / (mass * (level * depth + radius * gravity));
-      return std::min({tension, slip, peel}) >= 1.05 * scenario.place_limits.hold_factor;
+      const double margin = may_push_hanging(scenario, box, Vector3::UnitZ()) ? 1.05 : 1.25;
+      return std::min({tension, slip, peel}) >= margin * scenario.place_limits.hold_factor;
     };
-    if (pace > 0.35) {
+    if (pace > 0.25) {
       EXPECT_TRUE(holds(pace)) << mass;
     }
     if (pace < 1.0) {

@@ -109,6 +109,23 @@ TEST(PlanPlace, SlidesAlongTheAxesOfTheContainerAndSlowlyWhereItIsGentle) {
   for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(gentle[i].X_WE, rows[i].X_WE);
 }
 
+TEST(PlanPlace, OnItsSupportItPushesTheBoxWithTheCupUnloadedAndLetsGoOverItsPlace) {
+  PlaceScene scene;
+  scene.request.insertion = {.skill = InsertionSkill::SlideOnSupport,
+                             .come_from_T = Vector3(0.01, 0.0, 0.0),
+                             .overtravel_T = Vector3(-0.005, 0.0, 0.0)};
+  const auto rows = scene.rows();
+  ASSERT_EQ(variants_of(rows), "PrePlace+ PrePlace_2+ Place_down+ PlaceSlow_push+ Place+ Place PostPlace ");
+  // Lower than where the box hangs on its place by the sag of the cup, and by the press: all of the weight is below.
+  const model::CupParams& cup = demonstrator().cup;
+  const double lowered = scene.request.box.inertia.mass * 9.81 / cup.stiffness.axial + 0.005;
+  const double lead = 25.0 / cup.stiffness.lateral;  // what ends the push, N
+  expect_at(scene.off(rows[2]), Vector3(0.01, 0.0, -lowered));
+  expect_at(scene.off(rows[3]), Vector3(-0.005 - lead, 0.0, -lowered));
+  expect_at(scene.off(rows[4]), Vector3(0.0, 0.0, -lowered));
+  EXPECT_EQ(rows[4].X_WE, rows[5].X_WE);
+}
+
 TEST(PlanPlace, TiltsTheLowSideIntoTheSlotFirstAndLevelsItThere) {
   for (const Vector3& low_side : {Vector3(1.0, 0.0, 0.0), Vector3(0.0, 1.0, 0.0), Vector3(-1.0, 0.0, 0.0)}) {
     PlaceScene scene(0.5 * pi);
