@@ -155,7 +155,6 @@ internal::Scratch::Scratch(const WorldModel& model, int threads) : pool(threads)
     workers.push_back({NewtonScratch(n, row_capacity), PositionCorrection(n, row_capacity), {}, {}});
     workers.back().element_bodies.reserve(n);
   }
-  merged_pairs = BoundedVector<PairState>(model.pair_capacity);
   keys.reserve(2 * model.pair_capacity + 1);
   old_keys.reserve(model.pair_capacity);
   new_keys.reserve(model.pair_capacity + 1);

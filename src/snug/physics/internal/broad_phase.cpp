@@ -191,29 +191,35 @@ std::uint64_t key_of(const PairState& pair) {
   return key_of(static_cast<int>(pair.geom_a), static_cast<int>(pair.geom_b));
 }
 
-/// Replaces state.pairs by those of work.keys, keeping what is known of pairs that stay.
+/// Replaces state.pairs by those of work.keys, keeping what is known of pairs that stay. In place: both are sorted, so
+/// where a pair moves down, the one that was there is gone or moved down before; where it moves up, from the end, too.
 void replace_pairs(WorldState& state, Scratch& work) {
   constexpr int kNew = -1;
+  const std::size_t count = work.keys.size();
   std::size_t old = 0;
-  for (std::size_t i = 0; i < work.keys.size(); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     while (old < work.old_keys.size() && work.old_keys[old] < work.keys[i]) ++old;
     const bool is_old = old < work.old_keys.size() && work.old_keys[old] == work.keys[i];
     work.pair_origin[i] = is_old ? static_cast<int>(old) : kNew;
   }
-  work.merged_pairs.resize(work.keys.size());
-  for_ranges(work.pool, work.keys.size(), [&](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i) {
-      PairState& pair = work.merged_pairs[i];
-      if (work.pair_origin[i] != kNew) {
-        copy_pair(state.pairs[static_cast<std::size_t>(work.pair_origin[i])], pair);
-        continue;
-      }
-      pair = PairState{};
-      pair.geom_a = static_cast<std::uint32_t>(work.keys[i] >> 32);
-      pair.geom_b = static_cast<std::uint32_t>(work.keys[i]);
-    }
-  });
-  std::swap(state.pairs, work.merged_pairs);
+  state.pairs.resize(std::max(count, work.old_keys.size()));
+  const auto take = [&](std::size_t i) {
+    copy_pair(state.pairs[static_cast<std::size_t>(work.pair_origin[i])], state.pairs[i]);
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    if (work.pair_origin[i] > static_cast<int>(i)) take(i);
+  }
+  for (std::size_t i = count; i-- > 0;) {
+    if (work.pair_origin[i] != kNew && work.pair_origin[i] < static_cast<int>(i)) take(i);
+  }
+  state.pairs.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (work.pair_origin[i] != kNew) continue;
+    PairState& pair = state.pairs[i];
+    pair = PairState{};
+    pair.geom_a = static_cast<std::uint32_t>(work.keys[i] >> 32);
+    pair.geom_b = static_cast<std::uint32_t>(work.keys[i]);
+  }
 }
 
 }  // namespace

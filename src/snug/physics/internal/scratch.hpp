@@ -195,7 +195,6 @@ struct Scratch {
   bool has_belts = false;  ///< the model: surfaces that run
   SharedSupports shared_supports;
 
-  BoundedVector<PairState> merged_pairs;                ///< broad phase
   std::vector<std::uint64_t> keys, old_keys, new_keys;  ///< of pairs: all, those before, those of boxes that moved
   std::vector<int> pair_origin;                         ///< of each key: its place among the old ones
   std::vector<int> moved;
