@@ -20,6 +20,7 @@ struct Residuals {
 };
 
 struct ClusterScratch;
+class PackedSweeps;
 
 /// What a group of rows is solved with.
 struct GroupScratch {
@@ -31,6 +32,7 @@ struct GroupScratch {
   ContactSystem system;
   std::unique_ptr<NewtonRow[]> rows;
   std::unique_ptr<double[]> before;                     ///< 3 per row: impulses before the last sweep with momentum
+  std::unique_ptr<PackedSweeps> packed;                 ///< where there are clusters
   std::vector<double> u, u_free, u_start, error, step;  ///< 6 per active body
   std::unique_ptr<ClusterScratch> clusters;
   bool is_infeasible = false;  ///< the group that was solved last: no velocities keep its contacts apart

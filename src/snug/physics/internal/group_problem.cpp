@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "snug/physics/internal/contact_newton.hpp"
+#include "snug/physics/internal/packed_sweeps.hpp"
 
 namespace snug::physics::internal {
 namespace {
@@ -25,12 +26,17 @@ constexpr int kClusterRounds = 20;         ///< parts solved, each time with one
 constexpr double kClusterResidual = 0.5;   ///< of the tolerance, to which parts are solved
 constexpr int kCyclesWithoutClusters = 1;  ///< generalized steps where more than half is unsolved
 
-// Large groups: least time on 15 problems of settling piles of 300 and 1000 boxes.
-constexpr int kLargeGroup = 400;  ///< rows
-constexpr int kFirstSweeps = 60;  ///< with momentum, in place of generalized steps
-constexpr int kSweepsAgain = 60;  ///< where more than half is unsolved
-constexpr int kSweepsAround = 8;  ///< after clusters
-constexpr double kMostMomentum = 0.95;
+// Large groups: least time on 37 problems of settling piles of 300 and 1000 boxes.
+constexpr int kLargeGroup = 400;       ///< rows
+constexpr int kFirstSweeps = 120;      ///< with momentum, in place of generalized steps
+constexpr double kFewUnsolved = 0.01;  ///< of its rows: then these sweeps end, since clusters are quicker
+constexpr int kSweepsAround = 12;      ///< after clusters
+/// Of the rows: where clusters would have more, that many sweeps come again, kAgain times; then up to half are solved.
+constexpr double kMostClustered = 0.1;
+constexpr int kAgain = 2;
+constexpr double kMostMomentum = 0.97;
+/// Of the tolerance: large groups at rest are solved as far as sweeps in single precision go.
+constexpr double kSingleResidual = 0.1;
 constexpr double kStillSweep = 0.3;  ///< of the residual wanted: a change after which a sweep is the last
 
 constexpr double kFirstPenalty = 30.0;  ///< of the augmented Lagrangian, in units of 1 / W
@@ -102,8 +108,11 @@ class GroupProblem {
   void solve_from_here(bool is_nearly_solved);
   void start_anew();
   void run_cycles(int count);
-  void run_sweeps(int count);
+  void run_sweeps(int count, double few);
+  bool run_packed_sweeps(int count, double few);
   void take_momentum(double momentum);
+  /// m/s, residual that sweeps in single precision are asked for
+  [[nodiscard]] double within_reach() const { return std::max(wanted_, kSingleResidual * tolerance_); }
   /// Whether factors of the whole cost more than many sweeps.
   [[nodiscard]] bool is_large() const { return work_.clusters != nullptr && end_ - first_ >= kLargeGroup; }
   void solve_clusters();
@@ -129,6 +138,7 @@ class GroupProblem {
   bool is_proof_ = false;  ///< only rigid contacts, without friction
   int iterations_ = 0;
   int sweeps_ = 0;
+  std::ptrdiff_t packed_rows_ = 0;  ///< that work_.packed holds; -1: it cannot
 };
 
 void GroupProblem::add_row(Row& row) {
@@ -264,8 +274,25 @@ void GroupProblem::take_momentum(double momentum) {
   }
 }
 
-/// Forward sweeps with Nesterov's momentum, which starts anew where a sweep goes back on it.
-void GroupProblem::run_sweeps(int count) {
+/// False where too many rows share a body.
+bool GroupProblem::run_packed_sweeps(int count, double few) {
+  if (packed_rows_ < 0) return false;
+  if (packed_rows_ != end_ - first_) {
+    packed_rows_ = work_.packed->pack(first_, work_.system.patches(), bodies()) ? end_ - first_ : -1;
+    if (packed_rows_ < 0) return false;
+  }
+  (void)work_.packed->run(first_, u_, {count, kMostMomentum, within_reach(), few});
+  return true;
+}
+
+/// Forward sweeps with Nesterov's momentum, which starts anew where a sweep goes back on it. `few`: the fraction of
+/// rows that may stay unsolved.
+void GroupProblem::run_sweeps(int count, double few) {
+  if (run_packed_sweeps(count, few)) {
+    apply_impulses();
+    measure();
+    return;
+  }
   double* before = work_.before.get();
   for (const Row* row = first_; row != end_; ++row, before += 3) std::copy_n(row->lambda, 3, before);
   for (const int body : bodies()) std::copy_n(u_ + 6 * body, 6, work_.u_start.data() + 6 * body);
@@ -422,10 +449,12 @@ void GroupProblem::augment(const Care& care) {
 void GroupProblem::solve_clusters() {
   ClusterScratch& clusters = *work_.clusters;
   const Residuals residuals{kClusterResidual * tolerance_, kClusterResidual * tolerance_};
-  int rings = is_large() ? 1 : 0;
+  int rings = is_large() ? 1 : 0, again = 0;
   for (int round = 0; round < kClusterRounds && !is_solved() && has_room_; ++round) {
-    if (!clusters.rows.find(first_, work_.rows.get(), work_.system.patches(), tolerance_, rings)) {
-      is_large() ? run_sweeps(kSweepsAgain) : run_cycles(kCyclesWithoutClusters);
+    const double most = is_large() && again < kAgain ? kMostClustered : 0.5;
+    if (!clusters.rows.find(first_, work_.rows.get(), work_.system.patches(), tolerance_, rings, most)) {
+      ++again;
+      is_large() ? run_sweeps(kFirstSweeps, kFewUnsolved) : run_cycles(kCyclesWithoutClusters);
       rings = std::max(0, rings - 1);
       continue;
     }
@@ -436,7 +465,7 @@ void GroupProblem::solve_clusters() {
     clusters.rows.put_back(first_);
     measure();
     if (is_solved()) continue;
-    is_large() ? run_sweeps(kSweepsAround) : run_cycles(1);
+    is_large() ? run_sweeps(kSweepsAround, 0.0) : run_cycles(1);
   }
 }
 
@@ -455,10 +484,10 @@ void GroupProblem::start_anew() {
 void GroupProblem::solve_from_here(bool is_nearly_solved) {
   const bool has_parts = work_.clusters != nullptr && end_ - first_ >= kLeastClustered;
   const bool is_swept = is_large() && !presses();
-  if (is_nearly_solved && has_parts) {
+  if ((is_nearly_solved && has_parts) || (is_swept && best_ <= within_reach())) {
     measure();
   } else if (is_swept) {
-    run_sweeps(kFirstSweeps);
+    run_sweeps(kFirstSweeps, kFewUnsolved);
   } else {
     run_cycles(kCycles);
   }
@@ -494,6 +523,7 @@ int GroupProblem::solve(bool is_nearly_solved) {
 GroupScratch::GroupScratch(std::size_t bodies, std::size_t row_capacity, int levels)
     : system(bodies, row_capacity), rows(new NewtonRow[row_capacity]), before(new double[3 * row_capacity]) {
   if (levels > 0) {
+    packed = std::make_unique<PackedSweeps>(bodies, row_capacity);
     clusters.reset(new ClusterScratch{{bodies, row_capacity}, {bodies, row_capacity, levels - 1}});
   }
   for (std::vector<double>* v : {&u, &u_free, &u_start, &error, &step}) v->assign(6 * bodies, 0.0);

@@ -101,11 +101,11 @@ void RowClusters::copy_rows(const Row* rows) {
 }
 
 bool RowClusters::find(const Row* rows, const NewtonRow* newton, std::span<const RowPatch> patches, double residual,
-                       int rings) {
+                       int rings, double most) {
   mark_unsolved(rows, newton, patches, residual);
   for (int ring = 1; ring <= rings; ++ring) add_ring(ring);
   const RowPatch& last = patches.back();
-  if (2 * join() > at(last.first + last.count)) return false;
+  if (static_cast<double>(join()) > most * (last.first + last.count)) return false;
   copy_rows(rows);
   return true;
 }

@@ -20,9 +20,9 @@ class RowClusters {
   RowClusters(std::size_t bodies, std::size_t rows);
 
   /// Takes the bodies of all rows above `residual` and, `rings` times, what touches these; then the rows between them.
-  /// False when that is more than half of the island: then it has no parts.
+  /// False when these are more than the fraction `most` of the island: then it has no parts.
   [[nodiscard]] bool find(const Row* rows, const NewtonRow* newton, std::span<const RowPatch> patches, double residual,
-                          int rings);
+                          int rings, double most);
   /// Copies of the rows of each, in the order of the island.
   [[nodiscard]] std::size_t count() const { return ends_.size(); }
   [[nodiscard]] std::span<Row> operator[](std::size_t cluster);

@@ -1,0 +1,80 @@
+// PackedSweeps: sweeps over the rows of a large group, those of eight pairs of bodies side by side.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "snug/core/bounded_vector.hpp"
+#include "snug/physics/internal/contact_row.hpp"
+
+namespace snug::physics::internal {
+
+struct RowPatch;
+
+/// The rows of a group in single precision, in blocks of eight patches that share no body. Velocities are changes since
+/// the sweeps began, so rounding is small beside what is sought; what comes out is to be measured in double precision.
+/// Blocks, their order and the bytes that come out do not depend on the processor. Never allocates after construction.
+class PackedSweeps {
+ public:
+  static constexpr int kLanes = 8;
+  using Lanes = float[kLanes];
+
+  /// One row of each of eight patches.
+  struct alignas(32) Points {
+    Lanes j[3][12];     ///< of body A, then of B
+    Lanes V[6];         ///< inverse of the Delassus block
+    Lanes W[3];         ///< nn, n1, n2
+    Lanes W_inverse;    ///< 1 / nn
+    Lanes mobility[2];  ///< 11, 22
+    Lanes step_t, mu, gamma;
+    Lanes start[3];              ///< relative velocity without the changes; of the normal beyond its target
+    Lanes lambda[3], before[3];  ///< impulse, and that before the last sweep
+  };
+  struct Block {
+    std::int32_t a[kLanes] = {}, b[kLanes] = {};  ///< places of the bodies; 0: one that does not move
+    std::int32_t first = 0, count = 0;            ///< in points_
+    std::int32_t lanes = 0;                       ///< in use
+  };
+  struct Effort {
+    int sweeps = 0;           ///< at most
+    double momentum = 0.0;    ///< at most
+    double wanted = 0.0;      ///< m/s, residual
+    double few = 0.0;         ///< fraction of the rows that may miss `wanted` when sweeps end
+    int most_lanes = kLanes;  ///< at a time, where the processor has as many
+  };
+
+  PackedSweeps(std::size_t bodies, std::size_t rows);
+
+  /// Takes in the rows of a group; they stay until the next call. False: too many share a body to go side by side.
+  [[nodiscard]] bool pack(const Row* rows, std::span<const RowPatch> patches, std::span<const int> bodies);
+  /// Forward sweeps with Nesterov's momentum from the impulses of the packed rows and their velocities u. Leaves the
+  /// impulses in the rows. Returns the number of sweeps.
+  int run(Row* rows, const double* u, const Effort& effort);
+
+ private:
+  /// Rows of a patch in one lane of one block.
+  struct Chunk {
+    std::int32_t row = 0, count = 0, block = 0, lane = 0;
+  };
+  void add_chunk(Chunk chunk, int a, int b);
+  void fill(const Row* rows);
+  void begin(const Row* rows, const double* u);
+  void take_momentum(float momentum);
+  template <class Visit>
+  void each_row(const Visit& visit);
+
+  std::vector<std::int32_t> place_;                          ///< of each active body, from 1 on
+  BoundedVector<std::array<float, kLanes>> velocities_;      ///< of each place; the last two numbers are none
+  BoundedVector<std::array<float, kLanes>> old_velocities_;  ///< before the last sweep
+  BoundedVector<Block> blocks_;
+  BoundedVector<Points> points_;
+  BoundedVector<Chunk> chunks_;
+  BoundedVector<std::int32_t> open_;  ///< blocks with room for more
+  int row_count_ = 0;
+};
+
+}  // namespace snug::physics::internal

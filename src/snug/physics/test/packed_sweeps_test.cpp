@@ -1,0 +1,101 @@
+// Packed sweeps: rows solved to their laws in double precision, the same bytes by any vectors.
+#include "snug/physics/internal/packed_sweeps.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "snug/core/rng.hpp"
+#include "snug/physics/internal/contact_system.hpp"
+
+namespace snug::physics::internal {
+namespace {
+
+constexpr int kBodies = 60;
+
+/// Contacts between drawn pairs of bodies, 1 to 6 a pair, some of them with what does not move.
+struct Problem {
+  std::vector<Row> rows;
+  std::vector<RowPatch> patches;
+  std::vector<int> bodies = std::vector<int>(kBodies);
+  std::vector<double> u_free = std::vector<double>(6 * kBodies);
+
+  void add_patch(int ia, int ib, int count, Rng& rng) {
+    RowPatch patch;
+    patch.first = static_cast<int>(rows.size()), patch.count = count;
+    patch.ia = ia, patch.ib = ib;
+    for (int i = 0; i < count; ++i) {
+      Row row{};
+      row.ia = ia, row.ib = ib;
+      row.mu = 0.2;
+      row.kind = RowKind::Contact;
+      for (int axis = 0; axis < 3; ++axis) {
+        row.j[axis][axis] = -1.0, row.j[axis][6 + axis] = 1.0;
+        for (const int turning : {3, 4, 5, 9, 10, 11}) row.j[axis][turning] = rng.uniform(-1.0, 1.0);
+      }
+      finish_row(row);
+      rows.push_back(row);
+    }
+    patches.push_back(patch);
+  }
+
+  /// Velocities with the impulses of the rows.
+  [[nodiscard]] std::vector<double> velocities() const {
+    std::vector<double> u = u_free;
+    for (const Row& row : rows) apply(row, row.lambda, u.data());
+    return u;
+  }
+
+  [[nodiscard]] double residual() const {
+    return worst_residual(rows.data(), rows.data() + rows.size(), velocities().data());
+  }
+};
+
+Problem drawn_problem() {
+  Problem problem;
+  Rng rng = Rng(4).split("packed sweeps");
+  std::iota(problem.bodies.begin(), problem.bodies.end(), 0);
+  for (double& u : problem.u_free) u = rng.uniform(-1.0, 1.0);
+  for (int body = 0; body < kBodies; ++body) {
+    const int other = body - 1 - static_cast<int>(rng.uniform(0.0, 5.0));
+    problem.add_patch(std::max(other, -1), body, 1 + body % 6, rng);
+  }
+  return problem;
+}
+
+TEST(PackedSweeps, SolveRowsToTheirLaws) {
+  Problem problem = drawn_problem();
+  ASSERT_GT(problem.residual(), 0.1);
+  PackedSweeps sweeps(kBodies, problem.rows.size());
+  ASSERT_TRUE(sweeps.pack(problem.rows.data(), problem.patches, problem.bodies));
+  const int count = sweeps.run(problem.rows.data(), problem.velocities().data(), {1000, 0.9, 1e-5, 0.0});
+  EXPECT_LT(count, 1000);
+  EXPECT_LE(problem.residual(), 1e-5);
+}
+
+TEST(PackedSweeps, GiveTheSameBytesByFourAndByEight) {
+  Problem by_four = drawn_problem(), by_eight = drawn_problem();
+  PackedSweeps sweeps(kBodies, by_four.rows.size());
+  std::vector<int> counts;
+  for (const auto& [problem, lanes] : {std::pair(&by_four, 4), std::pair(&by_eight, 8)}) {
+    ASSERT_TRUE(sweeps.pack(problem->rows.data(), problem->patches, problem->bodies));
+    counts.push_back(sweeps.run(problem->rows.data(), problem->velocities().data(), {1000, 0.95, 1e-5, 0.0, lanes}));
+  }
+  EXPECT_EQ(counts[0], counts[1]);
+  for (std::size_t i = 0; i < by_four.rows.size(); ++i) {
+    EXPECT_TRUE(std::equal(by_four.rows[i].lambda, by_four.rows[i].lambda + 3, by_eight.rows[i].lambda)) << i;
+  }
+}
+
+TEST(PackedSweeps, RefuseWhatHangsOnOneBody) {
+  Problem problem;
+  Rng rng = Rng(4).split("star");
+  std::iota(problem.bodies.begin(), problem.bodies.end(), 0);
+  for (int body = 1; body < kBodies; ++body) problem.add_patch(0, body, 4, rng);
+  PackedSweeps sweeps(kBodies, problem.rows.size());
+  EXPECT_FALSE(sweeps.pack(problem.rows.data(), problem.patches, problem.bodies));
+}
+
+}  // namespace
+}  // namespace snug::physics::internal
