@@ -2,6 +2,7 @@
 // futures.
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <span>
 #include <string_view>
 #include <unordered_set>
@@ -17,8 +18,10 @@ namespace {
 /// around them: turns a decision time into work, so that a decision does not depend on the clock.
 constexpr double kPlacesPerSecond = 6.0e6;
 constexpr std::size_t kEntrants = 64;
-constexpr std::size_t kUnturned = 12;  ///< of these at least, for which the box is not turned
-constexpr std::size_t kOther = 8;      ///< of these, the best by the policy that was not chosen
+constexpr std::size_t kFewest = 4;  ///< that race where there is time for few roll-outs
+/// Of 64 entrants, of fewer in proportion: for which the box is not turned, and the best by the policy that was not
+/// chosen.
+constexpr std::size_t kUnturned = 12, kOther = 8;
 /// Futures that a container met as it is: 0.4 % of it, standard error.
 constexpr int kFutures = 128;
 
@@ -83,11 +86,23 @@ double largest_volume(const Prospect& prospect) {
   return largest;
 }
 
+/// All sides are multiples of one length, and it is a twentieth of the container's shortest side or more.
+bool are_of_a_grid(const Planning& planning, std::span<const Item> kinds) {
+  int unit = 0;
+  for (const Item& kind : kinds) {
+    for (int axis = 0; axis < 3; ++axis) unit = std::gcd(unit, to_ticks(kind.size[axis]));
+  }
+  return 20 * unit >= to_ticks(planning.inner_size.minCoeff());
+}
+
 /// Those that go on in roll-outs: the one of which more gets in decides. The tuned one knows edges that add up; maximal
-/// contact knows nothing and is as good where boxes are unlike those that it was tuned on.
+/// contact knows nothing and is as good where boxes are unlike those that it was tuned on. Boxes of a grid have a
+/// policy that was tuned on such boxes.
 std::vector<Policy> policies_for(const Planning& planning, std::span<const Item> kinds) {
   std::vector<Policy> policies(2, make_policy(planning, kinds));
-  policies.back().weights = planning.has_walls ? contact_weights() : from_below(contact_weights());
+  const bool is_grid = planning.has_walls && are_of_a_grid(planning, kinds);
+  policies.back().weights = is_grid ? grid_weights() : contact_weights();
+  if (!planning.has_walls) policies.back().weights = from_below(policies.back().weights);
   return policies;
 }
 
@@ -180,6 +195,7 @@ class ContactAwareAgent : public Agent {
     std::vector<Candidate> candidates;
     std::vector<Layout> entrants;
     std::vector<double> costs;  ///< percent
+    std::size_t racing = 0;     ///< the first of them; the others come after these
     NoPlace reason = NoPlace::NoStablePlace;
   };
 
@@ -197,19 +213,28 @@ class ContactAwareAgent : public Agent {
     const Question question{planning, state, item, cost, choice, layout};
     Outlook outlook = look_ahead(planning, state, &item);
     const std::vector<Policy> policies = policies_for(planning, kinds);
-    std::int64_t used = 0;
-    const std::size_t chosen =
-        choose_policy(layout, choice.piece, policies, outlook.prospect, outlook.free_volume, outlook.race, used);
-    outlook.race.effort = std::max<std::int64_t>(0, outlook.race.effort - used);
-    const Field field = make_field(question, policies, chosen, list.poses);
+    const PolicyChoice chosen =
+        choose_policy(layout, choice.piece, policies, outlook.prospect, outlook.free_volume, outlook.race);
+    outlook.race.effort = std::max<std::int64_t>(0, outlook.race.effort - chosen.looked_at);
+    const std::size_t racing = affordable(outlook.race, chosen);
+    outlook.race.is_short = racing < kEntrants;
+    const Field field = make_field(question, policies, chosen.policy, list.poses, racing);
     if (field.candidates.empty()) return tl::unexpected(field.reason);
-    return settle_race(policies[chosen], outlook, field);
+    return settle_race(policies[chosen.policy], outlook, field);
+  }
+
+  /// How many can race so that the first heat takes half of the effort at most: what a roll-out costs is known by now.
+  static std::size_t affordable(const RaceSettings& settings, const PolicyChoice& chosen) {
+    if (chosen.roll_outs == 0 || chosen.looked_at == 0) return kEntrants;
+    const double each = static_cast<double>(chosen.looked_at) / chosen.roll_outs;
+    const double most = 0.5 * static_cast<double>(settings.effort) / (each * settings.first_futures);
+    return static_cast<std::size_t>(std::clamp(most, static_cast<double>(kFewest), static_cast<double>(kEntrants)));
   }
 
   /// The best poses by the chosen policy, and some that only another order would have brought in: those by the other
-  /// policy, and those for which the box is not turned.
+  /// policy, and those for which the box is not turned. `racing`: as many as can race.
   Field make_field(const Question& ask, const std::vector<Policy>& policies, std::size_t chosen,
-                   const std::vector<CandidatePose>& poses) const {
+                   const std::vector<CandidatePose>& poses, std::size_t racing) const {
     Field field;
     std::vector<CandidatePose> taken;
     const auto take = [&](const CandidatePose& pose) {
@@ -234,10 +259,15 @@ class ContactAwareAgent : public Agent {
     std::vector<CandidatePose> by_chosen = poses, by_other = poses;
     order_by_cost(ask.layout, policies[chosen], ask.choice.piece, by_chosen);
     order_by_cost(ask.layout, policies[1 - chosen], ask.choice.piece, by_other);
-    take_from(by_chosen, kEntrants - kUnturned - kOther, false);
-    take_from(by_other, std::min<std::size_t>(field.entrants.size() + kOther, kEntrants), false);
-    if (ask.cost) take_from(by_chosen, std::min<std::size_t>(field.entrants.size() + kUnturned, kEntrants), true);
-    take_from(by_chosen, kEntrants, false);
+    for (const std::size_t most : {racing, kEntrants}) {
+      const std::size_t other = std::max<std::size_t>(1, most * kOther / kEntrants);
+      const std::size_t unturned = std::max<std::size_t>(1, most * kUnturned / kEntrants);
+      take_from(by_chosen, most - unturned - other, false);
+      take_from(by_other, std::min(field.entrants.size() + other, most), false);
+      if (ask.cost) take_from(by_chosen, std::min(field.entrants.size() + unturned, most), true);
+      take_from(by_chosen, most, false);
+      if (field.racing == 0) field.racing = field.entrants.size();
+    }
     return field;
   }
 
@@ -251,8 +281,11 @@ class ContactAwareAgent : public Agent {
     Decision decision;
     std::vector<double> charges;
     for (const double cost : field.costs) charges.push_back(0.01 * cost * outlook.room);
-    const std::vector<Standing> order =
-        race(field.entrants, policy, outlook.prospect, outlook.free_volume, outlook.race, &decision.roll_outs, charges);
+    std::vector<Standing> order = race(std::span(field.entrants).first(field.racing), policy, outlook.prospect,
+                                       outlook.free_volume, outlook.race, &decision.roll_outs, charges);
+    for (std::size_t i = field.racing; i < field.entrants.size(); ++i) {
+      order.push_back({.entrant = static_cast<int>(i)});
+    }
     const Standing& first = *std::ranges::find(order, 0, &Standing::entrant);
     std::vector<Candidate> ranked;
     for (const Standing& standing : order) {

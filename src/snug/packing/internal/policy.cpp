@@ -53,6 +53,17 @@ Weights default_weights() {
   return w;
 }
 
+Weights grid_weights() {
+  Weights w{};
+  w[Top] = 0.18;
+  w[Buried] = 0.10;
+  w[SideWaste] = 0.90;
+  w[Flush] = -0.45;
+  w[Footprint] = 1.00;
+  w[Touch] = -2.20;
+  return w;
+}
+
 Weights contact_weights() {
   Weights w{};
   w[Touch] = -1.0;

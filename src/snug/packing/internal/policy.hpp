@@ -27,7 +27,10 @@ using Features = std::array<double, kFeatureCount>;
 /// Added up with these; lower is better. Found as docs/theory/packing.md says.
 using Weights = std::array<double, kFeatureCount>;
 
+/// Tuned on boxes of which few are equal.
 [[nodiscard]] Weights default_weights();
+/// Tuned on cubes of a grid: touch much, end level with neighbours, stand on a small side.
+[[nodiscard]] Weights grid_weights();
 /// Maximal contact: as much of the whole surface as can be touches boxes, floor and walls; of equals the lowest.
 [[nodiscard]] Weights contact_weights();
 /// The same for a container without walls: of two places the lower one. Nothing holds a column that stands by itself.

@@ -59,9 +59,38 @@ double error_of_gain(const Standing& one) {
   return std::sqrt(std::max(0.0, one.gain_squares / n - one.gain * one.gain) / (n - 1.0));
 }
 
+/// What is known of gains before a single entrant is looked at (empirical Bayes): that of the first heat.
+struct Prior {
+  double mean = 0.0;      ///< m^3
+  double variance = 0.0;  ///< m^6, of true gains from entrant to entrant
+  double noise = 0.0;     ///< m^6, variance of the gain of one entrant from future to future
+
+  Prior() = default;
+  explicit Prior(const std::vector<Standing>& field) {
+    const double others = static_cast<double>(field.size()) - 1.0;
+    if (others < 1.0) return;
+    for (const Standing& one : field) mean += one.gain / others;
+    for (const Standing& one : field) {
+      if (one.entrant == 0) continue;
+      const double n = one.roll_outs;
+      variance += (one.gain - mean) * (one.gain - mean) / std::max(1.0, others - 1.0);
+      noise += (one.gain_squares - n * one.gain * one.gain) / std::max(1.0, n - 1.0) / others;
+    }
+    noise = std::max(0.0, noise);
+    variance = std::max(0.0, variance - noise / field.front().roll_outs);
+  }
+
+  /// m^3, of any future, after what was seen.
+  [[nodiscard]] double expected_gain(const Standing& one) const {
+    if (one.entrant == 0 || one.roll_outs == 0) return 0.0;
+    const double error = noise / one.roll_outs;
+    return error > 0.0 ? (one.gain * variance + mean * error) / (variance + error) : one.gain;
+  }
+};
+
 /// One heat: every entrant that is left meets the same futures.
 struct Heat {
-  const std::vector<Layout>& entrants;
+  std::span<const Layout> entrants;
   const Policy& policy;
   const Prospect& prospect;
   int threads;
@@ -183,7 +212,7 @@ double RollOutTree::roll_out(const Policy& policy, const Prospect& prospect, con
   return volume;
 }
 
-std::vector<Standing> race(const std::vector<Layout>& entrants, const Policy& policy, const Prospect& prospect,
+std::vector<Standing> race(std::span<const Layout> entrants, const Policy& policy, const Prospect& prospect,
                            double free_volume, const RaceSettings& settings, std::int64_t* roll_outs,
                            const std::vector<double>& charges) {
   const auto charge = [&](const Standing& one) {
@@ -192,10 +221,14 @@ std::vector<Standing> race(const std::vector<Layout>& entrants, const Policy& po
   const auto worth = [&](const Standing& one) { return std::round(kSteps * (one.mean - charge(one))); };
   // Of m gains that are nothing but chance the largest is about sqrt(2 ln m) standard errors: m met in the last heat.
   double doubt = 0.0;
-  // More than the first entrant, costs taken off; of a gain what is beyond doubt, all of a loss.
+  Prior prior;
+  // More than the first entrant, costs taken off; of a gain what is beyond doubt, all of a loss. In a short race what
+  // is expected of both.
   const auto sure_gain = [&](const Standing& one) {
-    const double net = one.gain - charge(one) + (charges.empty() ? 0.0 : charges.front());
-    return std::round(kSteps * (net > 0.0 ? std::max(0.0, net - doubt * error_of_gain(one)) : net));
+    const double gain = settings.is_short ? prior.expected_gain(one) : one.gain;
+    const double net = gain - charge(one) + (charges.empty() ? 0.0 : charges.front());
+    if (settings.is_short || net <= 0.0) return std::round(kSteps * net);
+    return std::round(kSteps * std::max(0.0, net - doubt * error_of_gain(one)));
   };
   // Of those that cannot be told apart the cheapest, then the one that the policy likes better.
   const auto comes_before = [&](const Standing& a, const Standing& b) {
@@ -222,6 +255,7 @@ std::vector<Standing> race(const std::vector<Layout>& entrants, const Policy& po
     std::vector<Standing> running(field.begin(), field.begin() + static_cast<std::ptrdiff_t>(left));
     const std::int64_t before = heat.effort();
     heat.run(running, drawn);
+    if (round == 0) prior = Prior(running);
     if (roll_outs != nullptr) *roll_outs += static_cast<std::int64_t>(running.size()) * futures;
     std::stable_sort(running.begin(), running.end(),
                      [&](const Standing& a, const Standing& b) { return worth(a) > worth(b); });
@@ -246,10 +280,10 @@ std::vector<Standing> race(const std::vector<Layout>& entrants, const Policy& po
   return field;
 }
 
-std::size_t choose_policy(const Layout& layout, const Piece& piece, const std::vector<Policy>& policies,
-                          const Prospect& prospect, double free_volume, const RaceSettings& settings,
-                          std::int64_t& used) {
+PolicyChoice choose_policy(const Layout& layout, const Piece& piece, const std::vector<Policy>& policies,
+                           const Prospect& prospect, double free_volume, const RaceSettings& settings) {
   std::vector<double> sums(policies.size(), 0.0);
+  PolicyChoice choice;
   RollOutWork work;
   Rng rng = Rng(settings.seed).split("policies");
   const double most = kChoiceEffort * static_cast<double>(settings.effort);
@@ -257,16 +291,18 @@ std::size_t choose_policy(const Layout& layout, const Piece& piece, const std::v
     const Future future = draw_future(prospect, free_volume, rng);
     for (std::size_t p = 0; p < policies.size(); ++p) {
       CandidatePose pose;
-      if (!choose(layout, policies[p], piece, work, pose)) return 0;
+      if (!choose(layout, policies[p], piece, work, pose)) return choice;
       Layout next = layout;
       next.add(Layout::block_at(piece, pose));
       sums[p] += roll_out(next, policies[p], prospect, future, settings.skips, work);
+      ++choice.roll_outs;
     }
     if (static_cast<double>(work.looked_at) * (i + 2.0) / (i + 1.0) > most) break;
   }
-  used += work.looked_at;
+  choice.looked_at = work.looked_at;
   for (double& sum : sums) sum = std::round(kSteps * sum);
-  return static_cast<std::size_t>(std::max_element(sums.begin(), sums.end()) - sums.begin());
+  choice.policy = static_cast<std::size_t>(std::max_element(sums.begin(), sums.end()) - sums.begin());
+  return choice;
 }
 
 }  // namespace snug::packing::internal

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -77,6 +78,8 @@ struct RaceSettings {
   int first_futures = 8;    ///< of every entrant, whatever the effort
   int skips = 0;            ///< items that may be skipped in a roll-out before it ends
   double doubt = 1.0;       ///< times the sqrt(2 ln m) standard errors that are taken off a gain
+  /// Too short for doubt to leave any gain: a gain counts as much as is expected of it after it was seen.
+  bool is_short = false;
 };
 
 struct Standing {
@@ -85,22 +88,29 @@ struct Standing {
   int roll_outs = 0;
   double gain = 0.0;          ///< m^3 more than the first entrant, on average over the futures that both met
   double gain_squares = 0.0;  ///< m^6, sum of squares of these
-  double sure = 0.0;          ///< m^3, in the end: what of the gain is beyond doubt, less what it costs more
+  double sure = 0.0;          ///< m^3, in the end: what counts of the gain, less what it costs more
 };
 
 /// Successive halving: all entrants meet the same futures, the worse half drops out, the rest meets more of them.
 /// `charges`: m^3 that are taken off an entrant's mean before it is compared, one each; empty: nothing is.
 /// The first entrant is what the policy would do; it meets all futures, and another one comes before it only by a gain
-/// beyond what the luckiest of the m entrants of the last heat has by chance: no reason to leave the policy. Best
-/// first, of equals the cheapest, then the one that comes first; same result at any number of threads.
-[[nodiscard]] std::vector<Standing> race(const std::vector<Layout>& entrants, const Policy& policy,
+/// beyond what the luckiest of the m entrants of the last heat has by chance: no reason to leave the policy. In a short
+/// race it comes before it by what is expected of its gain, where all gains have the mean and the variance of those of
+/// the first heat. Best first, of equals the cheapest, then the one that comes first; same result at any number of
+/// threads.
+[[nodiscard]] std::vector<Standing> race(std::span<const Layout> entrants, const Policy& policy,
                                          const Prospect& prospect, double free_volume, const RaceSettings& settings,
                                          std::int64_t* roll_outs, const std::vector<double>& charges = {});
 
+struct PolicyChoice {
+  std::size_t policy = 0;  ///< index
+  std::int64_t looked_at = 0;
+  int roll_outs = 0;
+};
+
 /// Which of the policies places more of what may come when it goes on from `layout` with `piece`, on a few futures that
-/// all of them meet; the first of equals. `used`: places that it looked at, added.
-[[nodiscard]] std::size_t choose_policy(const Layout& layout, const Piece& piece, const std::vector<Policy>& policies,
-                                        const Prospect& prospect, double free_volume, const RaceSettings& settings,
-                                        std::int64_t& used);
+/// all of them meet; the first of equals.
+[[nodiscard]] PolicyChoice choose_policy(const Layout& layout, const Piece& piece, const std::vector<Policy>& policies,
+                                         const Prospect& prospect, double free_volume, const RaceSettings& settings);
 
 }  // namespace snug::packing::internal

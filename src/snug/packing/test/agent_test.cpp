@@ -257,6 +257,37 @@ TEST(ContactAware, TurnsNoBoxForNothingAndKeepsPlacesOfEveryKind) {
   }
 }
 
+/// Where a roll-out takes long few places race, and those that do not are still offered.
+TEST(ContactAware, LetsFewPlacesRaceInLittleTimeAndOffersAll) {
+  FutureModel future;
+  for (int i = 0; i < 125; ++i) {
+    const Vector3 size = 0.05 * Vector3(1 + i % 5, 1 + i / 5 % 5, 1 + i / 25);
+    future.kinds.push_back(test::make_box("K" + std::to_string(i), size));
+    future.weights.push_back(1.0);
+  }
+  ContainerState state;
+  state.inner_size = Vector3(0.5, 0.5, 0.5);
+  PackingSettings settings;
+  settings.min_pick_face = settings.min_slenderness = 0.0;
+  const Item first = test::make_box("A", {0.15, 0.2, 0.1}), second = test::make_box("B", {0.1, 0.15, 0.25});
+  const auto decide = [&](double time, const Item& item) {
+    return make_agent(
+               "contact-aware",
+               {.settings = settings, .future = future, .sequence = {}, .is_reachable = {}, .run = {.time = time}})
+        ->decide(state, item);
+  };
+  const auto start = decide(0.02, first);
+  ASSERT_TRUE(start);
+  state = with_candidate(std::move(state), first, start->candidates.front());
+  const auto quick = decide(0.02, second), slow = decide(1.0, second);
+  ASSERT_TRUE(quick);
+  ASSERT_TRUE(slow);
+  EXPECT_LE(quick->roll_outs, 4 * 8);
+  EXPECT_GE(slow->roll_outs, 64 * 8);
+  EXPECT_EQ(quick->candidates.size(), 24U);
+  EXPECT_EQ(slow->candidates.size(), 24U);
+}
+
 TEST(FutureModel, OfAnOrderHasItsBoxesAloneAndOfACatalogueAllAgainAndAgain) {
   const model::Scenario scenario = test::demonstrator();
   model::Sequence order;
