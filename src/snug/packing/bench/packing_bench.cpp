@@ -86,13 +86,13 @@ std::vector<Item> random_sequence(const model::Scenario& scenario, int seed) {
 /// Percent filled at the first box without a place.
 double pack_stream(const bench::Stream& stream, const Options& options) {
   AgentInput input{stream.settings, stream.future, stream.items, {}, {}, options.run};
-  const bool is_greedy = options.agent == "contact";
+  const bool is_greedy = bench::is_greedy(options.agent);
   const auto agent = is_greedy ? nullptr : make_agent(options.agent, std::move(input));
   ContainerState state = stream.container;
   for (const Item& item : stream.items) {
     std::optional<Candidate> best;
     if (is_greedy) {
-      best = bench::place_by_contact(stream, state, item);
+      best = bench::place_greedily(options.agent, stream, state, item);
     } else if (auto decision = agent->decide(state, item)) {
       best = decision->candidates.front();
     }

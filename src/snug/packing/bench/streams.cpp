@@ -149,13 +149,32 @@ std::optional<Stream> draw_stream(const std::string& family, Rng rng) {
   return stream;
 }
 
-std::optional<Candidate> place_by_contact(const Stream& stream, const ContainerState& state, const Item& item) {
+namespace {
+
+std::optional<internal::Weights> weights_of(const std::string& agent) {
+  if (agent == "contact") return internal::contact_weights();
+  if (agent == "mixed") return internal::default_weights();
+  if (agent == "grid") return internal::grid_weights();
+  if (agent != "lowest") return std::nullopt;
+  internal::Weights lowest{};
+  lowest[internal::Top] = 1.0;
+  lowest[internal::Touch] = -1e-3;
+  return lowest;
+}
+
+}  // namespace
+
+bool is_greedy(const std::string& agent) { return weights_of(agent).has_value(); }
+
+std::optional<Candidate> place_greedily(const std::string& agent, const Stream& stream, const ContainerState& state,
+                                        const Item& item) {
   using namespace internal;
   const Planning planning = plan_for_contact(state, stream.settings);
   const Choice choice = make_choice(planning, item);
-  const Layout layout = to_layout(planning, make_rules(planning, {}), state);
-  Policy policy = make_policy(planning, {});
-  policy.weights = contact_weights();
+  const std::vector<Item>& kinds = stream.future.kinds;
+  const Layout layout = to_layout(planning, make_rules(planning, kinds), state);
+  Policy policy = make_policy(planning, kinds);
+  policy.weights = weights_of(agent).value();
   CandidatePoseList list;
   layout.find_poses(choice.piece, list);
   order_by_cost(layout, policy, choice.piece, list.poses);

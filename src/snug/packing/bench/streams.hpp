@@ -23,8 +23,11 @@ struct Stream {
 /// slab of that size). None: no such family.
 [[nodiscard]] std::optional<Stream> draw_stream(const std::string& family, Rng rng);
 
-/// The place of which most of the surface touches boxes, floor and walls.
-[[nodiscard]] std::optional<Candidate> place_by_contact(const Stream& stream, const ContainerState& state,
-                                                        const Item& item);
+/// Greedy agents: contact (most of the surface touches boxes, floor and walls), lowest (upper face as low as can be),
+/// and the two policies of the roll-outs by themselves, mixed and grid.
+[[nodiscard]] bool is_greedy(const std::string& agent);
+/// The place that such an agent takes.
+[[nodiscard]] std::optional<Candidate> place_greedily(const std::string& agent, const Stream& stream,
+                                                      const ContainerState& state, const Item& item);
 
 }  // namespace snug::packing::bench
