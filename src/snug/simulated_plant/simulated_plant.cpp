@@ -207,9 +207,14 @@ void SimulatedPlant::cancel() {
   end_motion();
 }
 
+/// Also where the program ended while boxes that a fault had moved came to rest.
+bool SimulatedPlant::is_at_end() const {
+  return simulation_.is_at_end(plan_, state_) || state_.controller.phase == motion::ControllerPhase::Finished;
+}
+
 void SimulatedPlant::step() {
   if (rest_) return step_rest();
-  if (runner_.phase() == plant::MotionPhase::Following && simulation_.is_at_end(plan_, state_)) runner_.arrive(time());
+  if (runner_.phase() == plant::MotionPhase::Following && is_at_end()) runner_.arrive(time());
   if (runner_.phase() == plant::MotionPhase::Settling && runner_.is_settled(time(), tool_speed())) {
     return finish_settling();
   }

@@ -82,6 +82,7 @@ class SimulatedPlant final : public plant::Plant {
     cell::CellTick before;     ///< the tick that it follows
   };
   void take_up(const TakenUp& begin);
+  [[nodiscard]] bool is_at_end() const;
   void step();
   void tick();
   /// Guards, and whatever else ends the motion, by the last tick.

@@ -257,6 +257,24 @@ TEST(FaultInjection, WaitsForBoxesAtMostAsLongAsTheScenarioSays) {
   EXPECT_GT(fed.times.back().waiting, 0.5) << "it fell and rocked";
 }
 
+/// The tool is on its way already when the box is moved, and reaches the last waypoint while the plant waits for it.
+TEST(FaultInjection, AMotionWhoseWaypointsEndWhileBoxesComeToRestIsComplete) {
+  SimulatedPlantOptions options = nominal("push@3");
+  options.simulation.tracking = motion::FastTracking{};
+  SimulatedPlant plant(three_boxes(), "1", options);
+  for (const std::string_view item : {kItems[0], kItems[1]}) (void)pack(plant, item);
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId(std::string(kItems[2]))));
+  plant::Motion motion = packing_of(kItems[2]);
+  const std::size_t release = motion.waypoints.size() - 2;
+  motion.perceive_after = motion::WaypointIndex(release);
+  motion.waypoints.back().X_WE.p = motion.waypoints[release].X_WE.p + 0.03 * Vector3::UnitZ();
+  const plant::Feedback fed = plant::run(plant, motion);
+  EXPECT_EQ(fed.end.reason, EndReason::Completed);
+  EXPECT_EQ(fault_events(plant).size(), 1U);
+  EXPECT_LT((fed.X_WE.p - motion.waypoints.back().X_WE.p).norm(), 0.001);
+  EXPECT_LT(fed.times.back().moving + fed.times.back().waiting, 3.0) << "the box falls and rocks meanwhile";
+}
+
 // Foreign objects.
 
 TEST(ObjectFault, StandsAtRestOnWhatCarriesItsWeight) {
