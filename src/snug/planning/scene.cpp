@@ -138,8 +138,27 @@ bool Scene::is_under_obstacle(model::ItemIndex item) const {
   });
 }
 
+bool Scene::is_under_box(model::ItemIndex item) const {
+  constexpr double kSunk = 0.020;  // m, of the one above into this one: boxes give way and are seen with errors
+  const Pose X_TW = cell.layout.X_WT.inverse();
+  const auto extent_of = [&](model::ItemIndex one) {
+    return packing::bounding_extent({belief.items[one.slot()], X_TW * X_WP(one)});
+  };
+  const packing::Extent own = extent_of(item);
+  for (std::size_t i = 0; i < belief.boxes.size(); ++i) {
+    const model::ItemIndex other(i);
+    if (other == item || !box(other)) continue;
+    const packing::Extent one = extent_of(other);
+    const Vector3 shared = own.high.cwiseMin(one.high) - own.low.cwiseMax(one.low);
+    const bool is_over = shared.head<2>().minCoeff() > rules().recovery.under_obstacle;
+    if (is_over && one.low.z() > own.high.z() - kSunk) return true;
+  }
+  return false;
+}
+
 bool Scene::can_be_picked(model::ItemIndex item) const {
-  if (!box(item) || !is_upright(X_WP(item).R, rules().skills.pick.max_lean) || is_under_obstacle(item)) return false;
+  if (!box(item) || !is_upright(X_WP(item).R, rules().skills.pick.max_lean)) return false;
+  if (is_under_obstacle(item) || is_under_box(item)) return false;
   if (!cell.reaches) return true;
   const auto waypoints = plan_pick(belief.nominal(), cell.layout, planned_box(item), X_WP(item), X_WP(item),
                                    travel_bottom(item), skills::PickKind::FromAfar);

@@ -53,7 +53,9 @@ struct Scene {
   [[nodiscard]] bool is_seen_outside(model::ItemIndex item) const;
   /// An obstacle lies on the box: it is neither picked nor pressed on.
   [[nodiscard]] bool is_under_obstacle(model::ItemIndex item) const;
-  /// It stands on a face, within reach of the tool.
+  /// Another box stands on it: the tool would have to go through that one.
+  [[nodiscard]] bool is_under_box(model::ItemIndex item) const;
+  /// It stands on a face, nothing stands on it, and the tool reaches it.
   [[nodiscard]] bool can_be_picked(model::ItemIndex item) const;
   /// m, over the inner floor of the container: the highest point of all obstacles and of all boxes but one, those that
   /// were left outside too: what is carried passes over it.

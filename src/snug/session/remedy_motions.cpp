@@ -172,7 +172,7 @@ std::vector<std::vector<motion::Waypoint>> plan_put_aside(const Scene& scene, co
 }
 
 bool can_return(const Scene& scene, model::ItemIndex item) {
-  if (!scene.box(item) || scene.is_under_obstacle(item)) return false;
+  if (!scene.box(item) || scene.is_under_obstacle(item) || scene.is_under_box(item)) return false;
   if (scene.locate(item) == planning::Location::Aligner) return false;
   const planning::ToolReach& reaches = scene.cell.reaches;
   return !reaches ||

@@ -327,6 +327,38 @@ TEST(RecoveryFlow, ABoxIsPlacedWithinTheLimitsAndOffItsPlaceBeyondThem) {
   EXPECT_EQ(trouble_of(Vector3::Zero(), -1.01 * limits.tilt), Trouble::OffPlace) << "it lies flat";
 }
 
+/// The first box stands 10 mm beyond a wall after the second one came: on it, or at the other end of the container.
+TEST(RecoveryFlow, ABoxUnderAnotherIsNotPickedAgain) {
+  const model::Scenario& scenario = two_boxes();
+  const Pose X_WT = container_pose();
+  const Vector3 inner = model::find_container(scenario, scenario.target)->inner_size;
+  const Vector3 size = model::find_parcel(scenario, "BOX027")->size;
+  const Vector3 beyond(0.5 * (inner.x() - size.x()) + 0.010, 0.0, 0.5 * size.z());
+  for (const bool is_under : {true, false}) {
+    SCOPED_TRACE(is_under);
+    ScriptedPlant plant;
+    plant.happens = [&](int motion) {
+      if (motion != 2) return;
+      const Vector3 on_it = beyond + Vector3(-0.015, 0.0, size.z()), far(0.0, -0.15, 0.5 * size.z());
+      plant.visible["BOX027"] = {X_WT.R, X_WT * beyond};
+      plant.visible["BOX028"] = {X_WT.R, X_WT * (is_under ? on_it : far)};
+    };
+    const SessionResult result = pack_items(plant, 2);
+    const auto picks = std::ranges::count_if(plant.motions, [](const plant::Motion& motion) {
+      const bool holds = std::ranges::any_of(motion.waypoints, [](const auto& row) { return row.io.vacuum; });
+      return holds && motion.item.value == "BOX027";
+    });
+    EXPECT_EQ(has(result.items[1], Trouble::SticksOut, Remedy::PickAgain), !is_under);
+    if (is_under) {
+      EXPECT_TRUE(has(result.items[1], Trouble::SticksOut, Remedy::Skip));
+      EXPECT_EQ(picks, 1) << "when it was packed";
+      EXPECT_FALSE(result.items[0].is_packed()) << "it still sticks out";
+    } else {
+      EXPECT_GT(picks, 1);
+    }
+  }
+}
+
 TEST(RecoveryFlow, ANeighbourThatLeansWhateverIsDoneIsNotCountedInTheEnd) {
   ScriptedPlant plant;
   plant.happens = [&](int) {
