@@ -4,11 +4,7 @@
 
 #include <algorithm>
 
-#if defined(__x86_64__) && defined(__GNUC__)
-#define SNUG_HAS_WIDE_VECTORS 1
-#else
-#define SNUG_HAS_WIDE_VECTORS 0
-#endif
+#include "snug/core/wide_vectors.hpp"
 
 namespace snug::packing::internal {
 namespace {

@@ -5,13 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "snug/core/wide_vectors.hpp"
 #include "snug/physics/internal/contact_system.hpp"
-
-#if defined(__x86_64__) && defined(__GNUC__)
-#define SNUG_HAS_WIDE_VECTORS 1
-#else
-#define SNUG_HAS_WIDE_VECTORS 0
-#endif
 
 namespace snug::physics::internal {
 namespace {

@@ -3,11 +3,7 @@
 
 #include <cstring>
 
-#if defined(__x86_64__) && defined(__GNUC__)
-#define SNUG_HAS_WIDE_VECTORS 1
-#else
-#define SNUG_HAS_WIDE_VECTORS 0
-#endif
+#include "snug/core/wide_vectors.hpp"
 
 namespace snug::physics::internal {
 namespace {
