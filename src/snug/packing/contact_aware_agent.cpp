@@ -216,7 +216,8 @@ class ContactAwareAgent : public Agent {
     const PolicyChoice chosen =
         choose_policy(layout, choice.piece, policies, outlook.prospect, outlook.free_volume, outlook.race);
     outlook.race.effort = std::max<std::int64_t>(0, outlook.race.effort - chosen.looked_at);
-    const std::size_t racing = affordable(outlook.race, chosen);
+    // On a pallet the policy stands for what holds, which rollouts do not know: it is left for a sure gain alone.
+    const std::size_t racing = planning.has_walls ? affordable(outlook.race, chosen) : kEntrants;
     outlook.race.is_short = racing < kEntrants;
     const Field field = make_field(question, policies, chosen.policy, list.poses, racing);
     if (field.candidates.empty()) return tl::unexpected(field.reason);
