@@ -29,15 +29,19 @@ def lowest(sums):
     return PUSHES[i] + 0.5 * (PUSHES[1] - PUSHES[0]) * (a - c) / (a - 2.0 * b + c)
 
 
+def simulate(program, sequence, *more):
+    document, problem = acceptance.run(program, sequence, *more)
+    if document is None:
+        raise SystemExit(f"release_push.py: {program.name}: {problem}")
+    return document
+
+
 def offsets(programs):
     """{kind: mean square of the offsets at each push, mm^2}"""
     squares = {}
     for number, push in enumerate(PUSHES):
         for sequence, program in programs.items():
-            document, problem = acceptance.run(program, sequence, "--set", f"cup.release_push={push}")
-            if document is None:
-                raise SystemExit(f"release_push.py: {program.name}: {problem}")
-            for repick in document["repicks"]:
+            for repick in simulate(program, sequence, "--set", f"cup.release_push={push}")["repicks"]:
                 squares.setdefault(kind_of(repick["id"]), [[] for _ in PUSHES])[number].append(repick["offset_mm"] ** 2)
     return {kind: [sum(rows) / max(1, len(rows)) for rows in each] for kind, each in squares.items()}
 
@@ -57,7 +61,10 @@ def main(arguments):
     print("|---|" + "---|" * (len(PUSHES) + 1))
     for kind, rows in squares.items():
         print(f"| {kind} | " + " | ".join(f"{row ** 0.5:.1f}" for row in rows) + " | |")
-    total = lambda kinds: [sum(squares[kind][i] for kind in kinds) for i in range(len(PUSHES))]
+
+    def total(kinds):
+        return [sum(squares[kind][i] for kind in kinds) for i in range(len(PUSHES))]
+
     best, without = lowest(total(squares)), []
     for kind in squares:
         without.append(lowest(total([other for other in squares if other != kind])))
@@ -68,7 +75,7 @@ def main(arguments):
     print(f"interval: {best:.2f} +- {STUDENT.get(n, 2.5) * error:.2f}\n")
     print("| boxes packed, % | " + " | ".join(f"sequence {n}" for n in programs) + " |\n|---|" + "---|" * len(programs))
     for seed in SEEDS:
-        shares = [acceptance.run(program, n, "--monte-carlo", draws, "--seed", str(seed))[0]["mean_packed_percent"] for n, program in programs.items()]
+        shares = [simulate(program, n, "--monte-carlo", draws, "--seed", str(seed))["mean_packed_percent"] for n, program in programs.items()]
         print(f"| {draws} cells, seed {seed} | " + " | ".join(f"{share:.1f}" for share in shares) + " |", flush=True)
     return 0
 

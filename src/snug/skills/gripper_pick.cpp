@@ -9,6 +9,7 @@
 
 #include "snug/cup/phases.hpp"
 #include "snug/motion/tool_yaw.hpp"
+#include "snug/skills/internal/row_parts.hpp"
 #include "snug/skills/primitives.hpp"
 
 namespace snug::skills {
@@ -23,14 +24,8 @@ struct Axes {
   double half_a = 0.0, half_b = 0.0;
 };
 
-int up_of(const Matrix3& R_WP) {
-  int up = 0;
-  R_WP.row(2).cwiseAbs().maxCoeff(&up);
-  return up;
-}
-
 Axes axes_of(const TopFace& face) {
-  const int up = up_of(face.X_WP.R);
+  const int up = internal::vertical_axis_of(face.X_WP.R);
   const int a = (up + 1) % 3, b = (up + 2) % 3;
   return {Vector3::Unit(a), Vector3::Unit(b), 0.5 * face.size[a], 0.5 * face.size[b]};
 }

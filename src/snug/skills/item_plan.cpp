@@ -121,8 +121,7 @@ std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const C
                                         const PlannedBox& box, const Pose& X_WP, const Pose& X_WP_next, double travel,
                                         PickKind kind) {
   PickIntent intent = pick_intent(scenario, layout, box, X_WP, X_WP_next, travel, kind);
-  int up = 0;
-  X_WP.R.row(2).cwiseAbs().maxCoeff(&up);
+  const int up = internal::vertical_axis_of(X_WP.R);
   const Vector3 up_P = std::copysign(1.0, X_WP.R(2, up)) * Vector3::Unit(up);
   if (!layout.is_fast || may_push_hanging(scenario, box, up_P)) return pick_rows(intent);
   // What the box stands on lets it go while the tool moves: it starts at the tool's speed, and bounces. So the cup

@@ -16,15 +16,10 @@ namespace {
 using internal::at_height;
 using internal::kHold;
 using internal::kRelease;
+using internal::vertical_axis_of;
 using motion::MotionClass;
 
 constexpr double kQuarterTurn = 0.5 * std::numbers::pi;
-
-int vertical_axis_of(const Matrix3& R_WP) {
-  int axis = 0;
-  R_WP.row(2).cwiseAbs().maxCoeff(&axis);
-  return axis;
-}
 
 Matrix3 turn(const Vector3& axis, double angle) { return exp_rotation(angle * axis); }
 

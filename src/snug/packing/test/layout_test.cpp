@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <set>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "snug/core/rng.hpp"
 #include "snug/packing/test/scene.hpp"
@@ -30,6 +33,78 @@ Piece random_piece(Rng& rng) {
   piece.orientations.push_back(
       {(1 + rng.index(5)) * kCell, (1 + rng.index(5)) * kCell, (1 + rng.index(4)) * kCell, 0, 0, 0});
   return piece;
+}
+
+/// What BlockTable answers, block by block, written from what its header says.
+struct PlainTable {
+  std::vector<Block> blocks;
+
+  static int shared(int low, int high, int other_low, int other_high) {
+    return std::min(high, other_high) - std::max(low, other_low);
+  }
+  [[nodiscard]] int highest_under(const Rectangle& area) const {
+    int highest = 0;
+    for (const Block& b : blocks) {
+      if (shared(area.x1, area.x2, b.x1, b.x2) > 0 && shared(area.y1, area.y2, b.y1, b.y2) > 0)
+        highest = std::max(highest, b.z2);
+    }
+    return highest;
+  }
+  [[nodiscard]] std::int64_t area_held(const Rectangle& face, int base, int slack) const {
+    std::int64_t held = 0;
+    for (const Block& b : blocks) {
+      const int x = shared(face.x1, face.x2, b.x1, b.x2), y = shared(face.y1, face.y2, b.y1, b.y2);
+      if (x > 0 && y > 0 && b.z2 <= base && b.z2 >= base - slack) held += std::int64_t{x} * y;
+    }
+    return held;
+  }
+  void look_beside(const Rectangle& face, int bottom, int top, int touch, BlockTable::Beside& beside) const {
+    for (const Block& b : blocks) {
+      const int x = shared(face.x1, face.x2, b.x1, b.x2), y = shared(face.y1, face.y2, b.y1, b.y2);
+      if ((x > 0) == (y > 0) || b.z2 - bottom <= touch) continue;
+      const std::size_t side = y > 0 ? (b.x1 < face.x1 ? 0U : 1U) : (b.y1 < face.y1 ? 2U : 3U);
+      const int gap = y > 0 ? -x : -y, along = y > 0 ? y : x;
+      beside.gap[side] = std::min(beside.gap[side], gap);
+      if (gap > touch) continue;
+      beside.contact += std::int64_t{along} * std::min(b.z2 - bottom, top - bottom);
+      if (std::abs(b.z2 - top) <= touch) beside.flush += along;
+    }
+  }
+};
+
+TEST(BlockTable, AnswersAsBlocksDoOneByOne) {
+  Rng rng = Rng(4).split("table");
+  const auto interval = [&rng](int longest) {
+    const int low = rng.index(120), length = 1 + rng.index(longest);
+    return std::pair(low, low + length);
+  };
+  for (int count = 0; count <= 40; ++count) {  // past several vectors, and every rest of one
+    BlockTable table;
+    PlainTable plain;
+    for (int i = 0; i < count; ++i) {
+      const auto [x1, x2] = interval(50);
+      const auto [y1, y2] = interval(50);
+      const int top = 1 + rng.index(60);
+      table.add({x1, y1, x2, y2}, top);
+      plain.blocks.push_back({x1, y1, 0, x2, y2, top});
+    }
+    for (int i = 0; i < 200; ++i) {
+      SCOPED_TRACE(count * 1000 + i);
+      const auto [x1, x2] = interval(60);
+      const auto [y1, y2] = interval(60);
+      const auto [bottom, top] = interval(40);
+      const Rectangle face{x1, y1, x2, y2};
+      const int touch = rng.index(5);
+      EXPECT_EQ(table.highest_under(face), plain.highest_under(face));
+      EXPECT_EQ(table.area_held(face, bottom, touch), plain.area_held(face, bottom, touch));
+      BlockTable::Beside is{{90, 80, 70, 60}, 5, 3}, should{{90, 80, 70, 60}, 5, 3};
+      table.look_beside(face, bottom, top, touch, is);
+      plain.look_beside(face, bottom, top, touch, should);
+      EXPECT_EQ(is.gap, should.gap);
+      EXPECT_EQ(is.contact, should.contact);
+      EXPECT_EQ(is.flush, should.flush);
+    }
+  }
 }
 
 /// Some pieces lowered at random cells.
