@@ -1,13 +1,13 @@
 // GuardedServer: httplib's server behind connections that are limited in time, size and number. Internal to the module.
 #pragma once
 
-#include <httplib.h>
-
 #include <chrono>
 #include <cstddef>
 #include <mutex>
 #include <set>
 #include <string_view>
+
+#include "snug/serve/internal/httplib.hpp"
 
 namespace snug::serve::internal {
 

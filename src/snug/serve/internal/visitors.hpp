@@ -1,11 +1,10 @@
 // Visitors: which requests are answered: by the name they ask for, where they come from, and what they know. Internal.
 #pragma once
 
-#include <httplib.h>
-
 #include <string>
 #include <vector>
 
+#include "snug/serve/internal/httplib.hpp"
 #include "snug/serve/server.hpp"
 
 namespace snug::serve::internal {
