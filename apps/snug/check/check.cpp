@@ -8,6 +8,7 @@
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/scenario_options.hpp"
 #include "apps/snug/command_line/shared_options.hpp"
+#include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/motion/program_csv.hpp"

@@ -50,7 +50,8 @@ std::string deviation_of_form(const Json& json, const ApiForm& form, const std::
     std::string inner = deviation(*found, field.type, path + key + ".");
     if (!inner.empty()) return inner;
   }
-  for (const auto& [key, value] : json.items()) {
+  for (const auto& entry : json.items()) {
+    const std::string& key = entry.key();
     const bool is_known = std::ranges::any_of(form.fields, [&](const ApiField& field) {
       return field.name == key || (field.name.ends_with('?') && field.name.substr(0, field.name.size() - 1) == key);
     });
