@@ -151,14 +151,14 @@ void write_down(Scenario& scenario, std::size_t types, std::size_t parcels, std:
       scenario.source_text = internal::text_with_target(scenario.source_text, container, "--items " + name);
   }
   if (scenario.source_text.empty()) return;
-  YAML::Node items;
+  internal::NewEntries entries;
   for (std::size_t i = types; i < scenario.parcel_types.size(); ++i)
-    items["parcel_types"].push_back(internal::as_yaml(scenario.parcel_types[i]));
+    entries["parcel_types"].push_back(internal::entry_of(scenario.parcel_types[i]));
   for (std::size_t i = parcels; i < scenario.parcels.size(); ++i)
-    items["parcels"].push_back(internal::as_yaml(scenario, scenario.parcels[i]));
+    entries["parcels"].push_back(internal::entry_of(scenario, scenario.parcels[i]));
   for (std::size_t i = sequences; i < scenario.sequences.size(); ++i)
-    items["sequences"].push_back(internal::as_yaml(scenario.sequences[i]));
-  scenario.source_text = internal::text_with_items(scenario.source_text, items, "--items " + name);
+    entries["sequences"].push_back(internal::entry_of(scenario.sequences[i]));
+  scenario.source_text = internal::text_with_entries(scenario.source_text, entries, "--items " + name);
 }
 
 /// The types of boxes: by article, with a number behind it where other boxes have that name.

@@ -16,13 +16,28 @@ YAML::Node as_yaml(const Vector3& v) {
 
 YAML::Node as_yaml(bool value) { return YAML::Node(value ? "true" : "false"); }
 
+std::string as_list(const Vector3& v) {
+  return "[" + to_text(v[0]) + ", " + to_text(v[1]) + ", " + to_text(v[2]) + "]";
+}
+
+std::string quoted(const std::string& name) {
+  std::string text = "\"";
+  for (const char c : name) text += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+  return text + "\"";
+}
+
+/// Stands for the new entries of a list until the tree is text: a tree of thousands of entries takes long to write. No
+/// name can hold the character.
+std::string mark_in_tree(const std::string& key) { return "\x01" + key; }
+std::string mark_in_text(const std::string& key) { return "\"\\x01" + key + "\""; }
+
 /// Takes the key away first: a value that is an alias of another would change that too.
 void set(YAML::Node map, const char* key, const YAML::Node& value) {
   map.remove(key);
   map[key] = value;
 }
 
-YAML::Node entry_of(const YAML::Node& root, const std::string& container) {
+YAML::Node container_entry(const YAML::Node& root, const std::string& container) {
   for (const YAML::Node& entry : root["containers"]) {
     if (entry["name"].Scalar() == container) return entry;
   }
@@ -63,9 +78,31 @@ std::string text_with_items(const std::string& text, const YAML::Node& items, co
   return text_of(root, text, why);
 }
 
+std::string text_with_entries(const std::string& text, const NewEntries& entries, const std::string& why) {
+  YAML::Node root = YAML::Load(text);
+  for (const auto& [key, list] : entries) {
+    if (!list.empty()) root[key].push_back(mark_in_tree(key));
+  }
+  std::string changed = text_of(root, text, why);
+  for (const auto& [key, list] : entries) {
+    if (list.empty()) continue;
+    const std::string mark = mark_in_text(key);
+    const std::size_t at = changed.find(mark);
+    SNUG_CHECK(at != std::string::npos, "what was put into a tree stands in its text");
+    const std::size_t line = changed.rfind('\n', at) + 1;
+    const std::string before = changed.substr(line, at - line);
+    const bool is_block = before.find_first_not_of(" -") == std::string::npos;
+    const std::string separator = is_block ? "\n" + before : ", ";
+    std::string all;
+    for (const std::string& entry : list) all += (all.empty() ? "" : separator) + entry;
+    changed.replace(at, mark.size(), all);
+  }
+  return changed;
+}
+
 std::string text_with_target(const std::string& text, const Container& container, const std::string& why) {
   YAML::Node root = YAML::Load(text);
-  const YAML::Node entry = entry_of(root, container.name);
+  const YAML::Node entry = container_entry(root, container.name);
   set(entry, "inner_size", as_yaml(container.inner_size));
   set(entry, "walls", as_yaml(container.has_walls));
   set(entry, "holds_all", as_yaml(container.holds_all));
@@ -73,40 +110,28 @@ std::string text_with_target(const std::string& text, const Container& container
   return text_of(root, text, why);
 }
 
-YAML::Node as_yaml(const ParcelType& type) {
-  YAML::Node node;
-  node["name"] = type.name;
-  node["size"] = as_yaml(type.size);
-  node["mass"] = to_text(type.mass);
-  node.SetStyle(YAML::EmitterStyle::Flow);
-  return node;
+std::string entry_of(const ParcelType& type) {
+  return "{name: " + quoted(type.name) + ", size: " + as_list(type.size) + ", mass: " + to_text(type.mass) + "}";
 }
 
-YAML::Node as_yaml(const Scenario& scenario, const Parcel& parcel) {
-  YAML::Node node;
-  node["id"] = parcel.id;
-  node["type"] = parcel.type;
-  node["material"] = scenario.materials[static_cast<std::size_t>(parcel.material.index)].name;
-  node["size"] = as_yaml(parcel.size);
-  node["mass"] = to_text(parcel.inertia.mass);
-  if (parcel.handling.upright_only) node["upright_only"] = as_yaml(true);
-  if (parcel.handling.no_stack) node["no_stack"] = as_yaml(true);
-  if (parcel.handling.max_load) node["max_load"] = to_text(*parcel.handling.max_load);
-  node.SetStyle(YAML::EmitterStyle::Flow);
-  return node;
+std::string entry_of(const Scenario& scenario, const Parcel& parcel) {
+  std::string entry = "{id: " + quoted(parcel.id) + ", type: " + quoted(parcel.type) + ", material: " +
+                      quoted(scenario.materials[static_cast<std::size_t>(parcel.material.index)].name) +
+                      ", size: " + as_list(parcel.size) + ", mass: " + to_text(parcel.inertia.mass);
+  if (parcel.handling.upright_only) entry += ", upright_only: true";
+  if (parcel.handling.no_stack) entry += ", no_stack: true";
+  if (parcel.handling.max_load) entry += ", max_load: " + to_text(*parcel.handling.max_load);
+  return entry + "}";
 }
 
-YAML::Node as_yaml(const Sequence& sequence) {
-  YAML::Node node;
-  node["name"] = sequence.name;
+std::string entry_of(const Sequence& sequence) {
+  std::string items;
   for (const Item& item : sequence.items) {
-    YAML::Node entry;
-    entry["parcel"] = item.parcel;
-    entry["up"] = std::string(item.up_sign < 0 ? "-" : "") + "XYZ"[static_cast<int>(item.up)];
-    entry.SetStyle(YAML::EmitterStyle::Flow);
-    node["items"].push_back(entry);
+    items += items.empty() ? "" : ", ";
+    items += "{parcel: " + quoted(item.parcel) + ", up: " + (item.up_sign < 0 ? "-" : "") +
+             "XYZ"[static_cast<int>(item.up)] + "}";
   }
-  return node;
+  return "{name: " + quoted(sequence.name) + ", items: [" + items + "]}";
 }
 
 }  // namespace snug::model::internal

@@ -3,7 +3,9 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <map>
 #include <string>
+#include <vector>
 
 #include "snug/model/scenario.hpp"
 
@@ -18,13 +20,18 @@ namespace snug::model::internal {
 /// what is left is the same scenario. `why` becomes the first line, a comment.
 [[nodiscard]] std::string text_with_items(const std::string& text, const YAML::Node& items, const std::string& why);
 
+/// Key of a list, and entries for it.
+using NewEntries = std::map<std::string, std::vector<std::string>>;
+/// The same of entries that are text already.
+[[nodiscard]] std::string text_with_entries(const std::string& text, const NewEntries& entries, const std::string& why);
+
 /// The text with these things of `container` in its entry of that name: inner_size, walls, holds_all; and it is the
 /// target.
 [[nodiscard]] std::string text_with_target(const std::string& text, const Container& container, const std::string& why);
 
-/// A parcel type, a parcel with uniform density and a sequence, as a scenario has them.
-[[nodiscard]] YAML::Node as_yaml(const ParcelType& type);
-[[nodiscard]] YAML::Node as_yaml(const Scenario& scenario, const Parcel& parcel);
-[[nodiscard]] YAML::Node as_yaml(const Sequence& sequence);
+/// A parcel type, a parcel with uniform density and a sequence, as an entry in a scenario's list of such.
+[[nodiscard]] std::string entry_of(const ParcelType& type);
+[[nodiscard]] std::string entry_of(const Scenario& scenario, const Parcel& parcel);
+[[nodiscard]] std::string entry_of(const Sequence& sequence);
 
 }  // namespace snug::model::internal

@@ -3,6 +3,7 @@
 #include "snug/core/test/scratch_folder.hpp"
 
 #include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
 
 #include <cmath>
 #include <fstream>
@@ -128,6 +129,31 @@ TEST(AddOrders, MakesParcelsAndOneSequenceForEachOrder) {
   EXPECT_THROW(
       add_orders(scenario, parse_orders_csv("order,length_mm,width_mm,height_mm,mass_kg\nA,1,1,1,1\n", "o"), "o"),
       InputError);
+}
+
+TEST(AddOrders, WritesDownWhatItAdded) {
+  // Lists of the file in block and in flow style; names that would end a quoted text or stand for something else.
+  Scenario block = demonstrator(), flow = demonstrator();
+  const YAML::Node root = YAML::Load(flow.source_text);
+  for (const char* key : {"parcel_types", "parcels", "sequences"}) {
+    YAML::Node list = root[key];
+    list.SetStyle(YAML::EmitterStyle::Flow);
+  }
+  YAML::Emitter emitter;
+  emitter << root;
+  flow = parse_scenario(std::string(emitter.c_str()) + "\n", flow.source_name);
+  for (Scenario* scenario : {&block, &flow}) {
+    add_orders(*scenario,
+               parse_orders_csv("order,article,length_mm,width_mm,height_mm,mass_kg,upright_only,max_load_kg\n"
+                                "null,\"a \"\" \\ b: #\",300,200,150,2.5,1,3\n\"- x, [y]\",~,100,90,80.5,1,0,\n",
+                                "o"),
+               "o");
+    const Scenario again = parse_scenario(scenario->source_text, scenario->source_name);
+    EXPECT_EQ(again.parcels, scenario->parcels);
+    EXPECT_EQ(again.parcel_types, scenario->parcel_types);
+    EXPECT_EQ(again.sequences, scenario->sequences);
+    EXPECT_EQ(again.sequences.back().name, "- x, [y]");
+  }
 }
 
 TEST(AddItems, ReadsMoreBoxesAndSequencesAsInAScenario) {
