@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "snug/core/rng.hpp"
 #include "snug/packing/agent.hpp"
@@ -25,7 +26,7 @@ struct Options {
   int skips = 0;
   PackingSettings settings;
   DecisionRun run;
-  std::string stream;  ///< family of draw_stream; empty: the demonstrator's boxes
+  std::string stream;  ///< family of draw_stream, or a file of orders; empty: the demonstrator's boxes
   int count = 5;       ///< streams
 };
 
@@ -102,24 +103,34 @@ double pack_stream(const bench::Stream& stream, const Options& options) {
   return filling_percent(state);
 }
 
-int pack_streams(const Options& options) {
-  double sum = 0.0, squares = 0.0;
+std::vector<bench::Stream> streams_of(const Options& options) {
+  if (options.stream.ends_with(".json") || options.stream.ends_with(".csv")) return bench::load_streams(options.stream);
+  std::vector<bench::Stream> streams;
   for (int i = 0; i < options.count; ++i) {
     const Rng rng = Rng(static_cast<std::uint64_t>(options.first + i)).split("stream " + options.stream);
-    const auto stream = bench::draw_stream(options.stream, rng);
-    if (!stream) {
-      std::fprintf(stderr, "no family '%s'\n", options.stream.c_str());
-      return 2;
-    }
-    const double percent = pack_stream(*stream, options);
+    if (auto stream = bench::draw_stream(options.stream, rng)) streams.push_back(std::move(*stream));
+  }
+  return streams;
+}
+
+int pack_streams(const Options& options) {
+  const std::vector<bench::Stream> streams = streams_of(options);
+  if (streams.empty()) {
+    std::fprintf(stderr, "no family '%s'\n", options.stream.c_str());
+    return 2;
+  }
+  double sum = 0.0, squares = 0.0;
+  for (const bench::Stream& stream : streams) {
+    const double percent = pack_stream(stream, options);
     std::printf("%.1f ", percent);
     std::fflush(stdout);
     sum += percent;
     squares += percent * percent;
   }
-  const double mean = sum / options.count;
+  const auto n = static_cast<double>(streams.size());
+  const double mean = sum / n;
   std::printf(" %s %s: mean %.2f sd %.2f n %d\n", options.stream.c_str(), options.agent.c_str(), mean,
-              std::sqrt(std::max(0.0, squares / options.count - mean * mean)), options.count);
+              std::sqrt(std::max(0.0, squares / n - mean * mean)), static_cast<int>(streams.size()));
   return 0;
 }
 

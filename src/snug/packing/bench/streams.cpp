@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "snug/model/items_file.hpp"
 #include "snug/packing/internal/agents.hpp"
 
 namespace snug::packing::bench {
@@ -147,6 +148,30 @@ std::optional<Stream> draw_stream(const std::string& family, Rng rng) {
     return std::nullopt;
   }
   return stream;
+}
+
+std::vector<Stream> load_streams(const std::filesystem::path& orders) {
+  std::vector<Stream> streams;
+  std::string order;
+  for (const model::OrderLine& line : model::load_orders(orders)) {
+    if (streams.empty() || line.order != order) {
+      order = line.order;
+      Stream& stream = streams.emplace_back();
+      stream.container.inner_size = Vector3(1.2, 0.8, 0.8);
+      stream.settings = plain_settings(0.6);
+      stream.settings.com_margin = 0.005;
+      stream.future.comes_once = true;
+    }
+    Stream& stream = streams.back();
+    for (int i = 0; i < line.count; ++i) {
+      Item item = make_item_of(line.size, stream.items.size());
+      item.mass = line.mass;
+      stream.items.push_back(item);
+      stream.future.kinds.push_back(item);
+      stream.future.weights.push_back(1.0);
+    }
+  }
+  return streams;
 }
 
 namespace {

@@ -1,6 +1,7 @@
 // Streams: lines of boxes as the literature on packing online draws them, and a greedy of one line to compare with.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ struct Stream {
 /// sides 2 to 5; by height, by what stands on what), cartons (60 to 300 mm, 600x400x300), cartons-pallet (the same on a
 /// slab of that size). None: no such family.
 [[nodiscard]] std::optional<Stream> draw_stream(const std::string& family, Rng rng);
+/// The orders of a file (CSV or BED-BPP JSON), each as a line that an agent knows as `pack --future order` does, in a
+/// box of 1200x800x800 mm. Throws InputError.
+[[nodiscard]] std::vector<Stream> load_streams(const std::filesystem::path& orders);
 
 /// Greedy agents: contact (most of the surface touches boxes, floor and walls), lowest (upper face as low as can be),
 /// and the two policies of the roll-outs by themselves, mixed and grid.
