@@ -73,7 +73,7 @@ Expected<Decision, NoPlace> Agent::decide_with_costs(const ContainerState& state
 }
 
 Expected<Decision, NoPlace> Agent::decide_pressed(const ContainerState& /*state*/, const Item& /*item*/,
-                                                  const PlaceCost& /*cost*/) {
+                                                  const PlaceCost& /*cost*/, double /*pressed*/) {
   return tl::unexpected(NoPlace::NoSpace);
 }
 

@@ -39,7 +39,7 @@ struct FutureModel {
 struct Decision {
   std::vector<Candidate> candidates;  ///< best first, never empty
   std::int64_t roll_outs = 0;
-  bool is_pressed = false;  ///< planned with PackingSettings::last_interference
+  double pressed = 0.0;  ///< m: planned with this interference, where there is no other place; 0: as always
   bool operator==(const Decision&) const = default;
 };
 
@@ -57,9 +57,10 @@ class Agent {
   /// costs decide without.
   [[nodiscard]] virtual Expected<Decision, NoPlace> decide_with_costs(const ContainerState& state, const Item& item,
                                                                       const PlaceCost& cost);
-  /// Other places, planned with `last_interference`, where none of decide() can be had; for most agents there are none.
+  /// Other places, planned with more interference than `pressed` (Decision::pressed), up to `last_interference`, where
+  /// none of decide() can be had; for most agents there are none.
   [[nodiscard]] virtual Expected<Decision, NoPlace> decide_pressed(const ContainerState& state, const Item& item,
-                                                                   const PlaceCost& cost);
+                                                                   const PlaceCost& cost, double pressed);
   /// Percent filled in the end, on average over what may come, when everything stays where it lies; nothing for agents
   /// that do not look ahead.
   [[nodiscard]] virtual std::optional<double> expected_percent(const ContainerState& state);

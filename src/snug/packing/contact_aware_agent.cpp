@@ -121,22 +121,25 @@ class ContactAwareAgent : public Agent {
     const bool is_full =
         !decision && (decision.error() == NoPlace::NoSpace || decision.error() == NoPlace::NoStablePlace);
     if (!is_full) return decision;
-    Expected<Decision, NoPlace> pressed = decide_pressed(state, item, cost);
+    Expected<Decision, NoPlace> pressed = decide_pressed(state, item, cost, 0.0);
     return pressed ? pressed : decision;
   }
 
-  Expected<Decision, NoPlace> decide_pressed(const ContainerState& state, const Item& item,
-                                             const PlaceCost& cost) override {
+  Expected<Decision, NoPlace> decide_pressed(const ContainerState& state, const Item& item, const PlaceCost& cost,
+                                             double pressed) override {
     if (!input_.run.tries_places) return tl::unexpected(NoPlace::NoSpace);
     PackingSettings settings = input_.settings;
-    settings.planned_interference = settings.last_interference;
-    const Planning planning = plan_for_contact(state, settings);
-    if (planning.planned_interference <= plan_for_contact(state, input_.settings).planned_interference) {
-      return tl::unexpected(NoPlace::NoSpace);
+    const double least = std::max(pressed, plan_for_contact(state, settings).planned_interference);
+    for (const double share : {0.5, 1.0}) {  // gently first: what has to give way less is more often pushed aside
+      settings.planned_interference = share * input_.settings.last_interference;
+      const Planning planning = plan_for_contact(state, settings);
+      if (planning.planned_interference <= least) continue;
+      Expected<Decision, NoPlace> decision = decide_planned(state, item, planning, cost);
+      if (!decision) continue;
+      decision->pressed = planning.planned_interference;
+      return decision;
     }
-    Expected<Decision, NoPlace> decision = decide_planned(state, item, planning, cost);
-    if (decision) decision->is_pressed = true;
-    return decision;
+    return tl::unexpected(NoPlace::NoSpace);
   }
 
   std::optional<double> expected_percent(const ContainerState& state) override {

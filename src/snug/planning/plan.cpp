@@ -61,12 +61,14 @@ class Planner {
     X_WE_after_ = tool_after(packing::with_candidate(state, plan_.standing, decision->candidates.front()));
     plan_.decision_seconds += seconds_since(start);
     rehearse(decision->candidates);
-    if (!plan_.best && !decision->is_pressed) {
+    for (double pressed = decision->pressed; !plan_.best;) {
       start = Clock::now();
-      auto pressed = agent_.decide_pressed(state, plan_.standing, cost);
-      if (pressed) sort_by_utility(scene_, standing_, pressed->candidates);
+      auto more = agent_.decide_pressed(state, plan_.standing, cost, pressed);
+      if (more) sort_by_utility(scene_, standing_, more->candidates);
       plan_.decision_seconds += seconds_since(start);
-      if (pressed) rehearse(pressed->candidates);
+      if (!more) break;
+      rehearse(more->candidates);
+      pressed = more->pressed;
     }
     finish();
     return std::move(plan_);
