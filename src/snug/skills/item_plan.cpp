@@ -83,6 +83,19 @@ PickIntent pick_intent(const model::Scenario& scenario, const CellLayout& layout
   return intent;
 }
 
+/// Of the height of a pushed box: so far below its upper edge the force of the push is to act.
+constexpr double kPushBelowTop = 0.2;
+constexpr double kMostPushLean = 0.09;  ///< rad
+
+/// rad, of the tool: the moment of the cup that is bent so takes the force of the push from the height of the lip to
+/// that depth. A box that hangs upright would be turned until its upper edge alone is pressed.
+double lean_of_push(const model::Scenario& scenario, const PlaceRequest& request) {
+  const double height = (request.X_TP.R.row(2).cwiseAbs() * request.box.size).value();
+  const double force = scenario.cup.stiffness.lateral * request.insertion.overtravel_T.norm();
+  const double moment = force * kPushBelowTop * height;
+  return moment < scenario.cup.stiffness.bend * kMostPushLean ? moment / scenario.cup.stiffness.bend : kMostPushLean;
+}
+
 }  // namespace
 
 const char* name_of(Reorientation reorientation) {
@@ -396,6 +409,10 @@ std::vector<motion::Waypoint> plan_place(const model::Scenario& scenario, const 
     }
   }
   if (!layout.is_fast) return place_rows(intent);
+  if (request.insertion.skill == InsertionSkill::SlideToContact && !scenario.gripper) {
+    intent.push_lean = lean_of_push(scenario, request);
+    intent.lip = scenario.cup.hold_length;
+  }
   intent.entry_bottom = intent.X_WP.p.z() + lowest_corner(intent.X_WP.R, intent.size);  // straight down
   const double least = intent.travel_bottom - layout.travel.clearance + layout.travel.turning_clearance;
   for (int i = 0; i < kRaises; ++i) {

@@ -87,6 +87,14 @@ std::optional<Pose> tool_at_entry(const PlaceIntent& intent) {
   return intent.tool_for(shifted(at_height(intent.X_WP, intent.entry_bottom + height), intent.come_from));
 }
 
+/// The tool turned about its lip, so that the lower edge of what hangs from it goes ahead in the direction of `push`.
+Pose lean_into(const Pose& X_WE, const PlaceIntent& intent, const Vector3& push) {
+  if (push.isZero() || intent.push_lean == 0.0) return X_WE;
+  const Matrix3 R = turn(push.normalized().cross(Vector3::UnitZ()), intent.push_lean);
+  const Vector3 p_ELip_W = intent.lip * X_WE.R.col(2);
+  return {R * X_WE.R, X_WE.p + p_ELip_W - R * p_ELip_W};
+}
+
 }  // namespace
 
 double lowest_corner(const Matrix3& R_WP, const Vector3& size) {
@@ -215,12 +223,13 @@ std::vector<motion::Waypoint> place_rows(const PlaceIntent& intent) {
     if (slides) {
       const double height_of_push = intent.lowered ? rest - *intent.lowered : rest + intent.params.slide_gap;
       rows.add(place, tool(height_of_push, from), kHold, "_down");
-      rows.add(MotionClass::PlaceSlow, tool(height_of_push, intent.overtravel), kHold, "_push");
+      const Pose X_WE_pushed = lean_into(tool(height_of_push, intent.overtravel), intent, intent.overtravel);
+      rows.add(MotionClass::PlaceSlow, X_WE_pushed, kHold, "_push");
     }
     // On its support the box stays where it was pushed to; hanging it would follow the tool.
     if (!intent.lowered) last = intent.overtravel;
   }
-  const Pose X_WE_end = tool(rest - intent.lowered.value_or(intent.params.press), 0.5 * last);
+  const Pose X_WE_end = lean_into(tool(rest - intent.lowered.value_or(intent.params.press), 0.5 * last), intent, last);
   rows.add(place, X_WE_end, kHold);
   rows.add(place, X_WE_end, kRelease);
   const double over = std::max(intent.travel_bottom, X_WE_end.p.z()) + intent.params.retreat;

@@ -92,6 +92,10 @@ struct PlaceIntent {
   /// m, of the tool below where the box would just touch its support hanging, while it is pushed and let go: so far
   /// that the support carries it. None: it is pushed while it hangs.
   std::optional<double> lowered;
+  /// rad, the tool leans about its lip while it pushes and until it lets go, so that the lower edge of the box leads.
+  /// Upright, it would pull the upper edge ahead: the neighbour's force acts below the cup and turns the box.
+  double push_lean = 0.0;
+  double lip = 0.055;  ///< m, from E to the lip of the cup that holds the box
 };
 /// Rows PrePlace, PrePlace_2, Place ..., Place with vacuum off and blow-off on, PostPlace straight up.
 [[nodiscard]] std::vector<motion::Waypoint> place_rows(const PlaceIntent& intent);

@@ -42,13 +42,14 @@ class RehearsalOfOneBox : public testing::Test {
     one.placement.X_TP = {packing::rotation(one.placement.orientation), p_TP};
     return one;
   }
-  [[nodiscard]] Attempt attempt(const packing::Candidate& where, int threads = 1) {
+  [[nodiscard]] Attempt attempt(const packing::Candidate& where, int threads = 1,
+                                const skills::Insertion& insertion = {}) {
     plant::Feedback robot;
     robot.X_WE = scenario_.controller.X_WE_start;
     const auto rollouts = belief_->take_up(robot);
     planning::Rehearsal rehearsal(belief_->now(), cell_, rollouts, threads,
                                   {model::ItemIndex(0), belief_->box(0)->X_WP, planning::Location::Aligner, {}});
-    return rehearsal.attempt(where, {}, 0.0);
+    return rehearsal.attempt(where, insertion, 0.0);
   }
 
   model::Scenario scenario_;
@@ -132,6 +133,43 @@ TEST_F(RehearsalOfOneBox, ItsResultDoesNotDependOnThreads) {
   EXPECT_EQ(one.program, two.program);
   EXPECT_EQ(one.ends, two.ends);
   EXPECT_EQ(one.predicted.force, two.predicted.force);
+}
+
+/// BOX015, 201 mm high, 97 mm wide.
+class RehearsalOfATallBox : public RehearsalOfOneBox {
+ protected:
+  static model::Scenario tall() {
+    model::Scenario scenario = model::test::shortened(6);
+    scenario.sequences[0].items.erase(scenario.sequences[0].items.begin(), scenario.sequences[0].items.end() - 1);
+    return scenario;
+  }
+  RehearsalOfATallBox() : RehearsalOfOneBox(tall()) {}
+};
+
+/// Pushed by an upright tool it would be turned about the cup, meet the walls with its upper edges and fall back flat.
+TEST_F(RehearsalOfATallBox, ABoxThatIsPushedIntoACornerStandsAgainstBothWalls) {
+  believe(2);
+  ASSERT_EQ(belief_->now().items[0].id, "BOX015");
+  const Vector3 inner = model::find_container(scenario_, scenario_.target)->inner_size;
+  packing::Candidate where = candidate();
+  where.placement.item = "BOX015";
+  const Vector3 size = model::collision_size(scenario_, *model::find_parcel(scenario_, "BOX015"));
+  const Vector3 half = 0.5 * (where.placement.X_TP.R.cwiseAbs() * size);
+  const Vector3 contact(half.x() - 0.5 * inner.x(), half.y() - 0.5 * inner.y(), half.z());
+  // As it is planned: smaller than measured by scenario_.packing.planned_interference.
+  const double inside = 0.5 * scenario_.packing.planned_interference;
+  where.placement.X_TP.p = contact - Vector3(inside, inside, 0.0);
+  const Attempt one = attempt(where, 1,
+                              {.skill = skills::InsertionSkill::SlideToContact,
+                               .come_from_T = Vector3(0.01, 0.01, 0.0),
+                               .overtravel_T = Vector3(-0.005, -0.005, 0.0)});
+  ASSERT_TRUE(one.succeeded) << one.text;
+  const Pose X_WT = model::find_container(scenario_, scenario_.target)->X_WT;
+  for (const auto& end : one.ends) {
+    ASSERT_TRUE(end[0]);
+    const Pose X_TP = X_WT.inverse() * *end[0];
+    EXPECT_LT((X_TP.p - contact).head<2>().norm(), 0.0011);
+  }
 }
 
 /// Boxes are not seen: each world has its own arrival, drawn within 12 mm, and picks where the nominal one does. So a

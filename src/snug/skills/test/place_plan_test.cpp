@@ -109,6 +109,33 @@ TEST(PlanPlace, SlidesAlongTheAxesOfTheContainerAndSlowlyWhereItIsGentle) {
   for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(gentle[i].X_WE, rows[i].X_WE);
 }
 
+/// In fast motions the tool leans into a push, about its lip: the force of a neighbour acts below the cup.
+TEST(PlanPlace, LeansIntoAPushSoThatTheLowerEdgeGoesAheadAsFarAsTheForceAsks) {
+  PlaceScene scene;
+  scene.request.insertion = {.skill = InsertionSkill::SlideToContact, .come_from_T = Vector3(0.01, -0.01, 0.0)};
+  const model::CupParams& cup = demonstrator().cup;
+  const double height = (scene.request.X_TP.R.row(2).cwiseAbs() * scene.request.box.size).value();
+  for (const Vector3& push : {Vector3(-0.0005, 0.0, 0.0), Vector3(-0.0002, 0.0003, 0.0), Vector3(-0.005, 0.005, 0.0)}) {
+    SCOPED_TRACE(push.transpose());
+    scene.request.insertion.overtravel_T = push;
+    scene.layout.is_fast = false;
+    const auto upright = scene.rows();
+    scene.layout.is_fast = true;
+    const auto rows = scene.rows();
+    ASSERT_EQ(variants_of(rows), "PrePlace+ Place_down+ PlaceSlow_push+ Place+ Place PostPlace ");
+    EXPECT_LT(angle_between(rows[1].X_WE.R, upright[2].X_WE.R), 1e-9) << "it goes down upright";
+    const double asked = 0.2 * height * cup.stiffness.lateral * push.norm() / cup.stiffness.bend;
+    for (std::size_t i = 2; i < 5; ++i) {
+      const Matrix3 lean_T =
+          scene.layout.X_WT.R.transpose() * rows[i].X_WE.R * upright[i + 1].X_WE.R.transpose() * scene.layout.X_WT.R;
+      EXPECT_NEAR(angle_between(lean_T, Matrix3::Identity()), std::min(asked, 0.09), 1e-9);
+      EXPECT_GT((lean_T * -Vector3::UnitZ()).dot(push.normalized()), 0.9 * std::min(asked, 0.09)) << "what is below";
+      const Vector3 p_ELip(0.0, 0.0, cup.hold_length);
+      EXPECT_LT((rows[i].X_WE * p_ELip - upright[i + 1].X_WE * p_ELip).norm(), 1e-9) << "about the lip";
+    }
+  }
+}
+
 TEST(PlanPlace, OnItsSupportItPushesTheBoxWithTheCupUnloadedAndLetsGoOverItsPlace) {
   PlaceScene scene;
   scene.request.insertion = {.skill = InsertionSkill::SlideOnSupport,
