@@ -9,6 +9,7 @@ namespace snug::physics::internal {
 namespace {
 
 constexpr double kParallel = 1e-9;  ///< 1 - cosine between normals of one plane: 45 urad
+constexpr double kLeans = 5e-7;     ///< 1 - cosine between a face and the support that it lies on: 1 mrad
 constexpr double kFlush = 1e-6;     ///< m, between supports of one plane, and between points of one face
 constexpr double kOnRim = 1e-7;     ///< m, a point as near to the rim, or inside, bears nothing
 
@@ -37,12 +38,29 @@ View view_of(const Scratch& work, const Patch& patch) {
           is_b ? patch.n : Vector3(-patch.n)};
 }
 
-/// Where the plane of a support lies along its normal, m.
-double height_of(const WorldState& state, const Scratch& work, const Patch& patch, const View& view) {
+/// The normal of the support's own face, W. That of the patch may be the normal of the body's face instead, which leans
+/// against the support where two of its corners stand off by some micrometres.
+Vector3 support_normal(const WorldModel& model, const WorldState& state, const Scratch& work, const Patch& patch) {
+  const View view = view_of(work, patch);
+  const PairState& pair = state.pairs[patch.pair];
+  const WorldModel::GeomRef& ref = model.geoms[view.is_b ? pair.geom_a : pair.geom_b];
+  const Geom& geom = model.bodies[static_cast<std::size_t>(ref.body)].geoms[static_cast<std::size_t>(ref.geom)];
+  if (!std::holds_alternative<geometry::Box>(geom.shape)) return view.n_W;
+  const Matrix3 axes = work.bodies[static_cast<std::size_t>(view.fixed)].R_WB * geom.X_BG.R;
+  for (int i = 0; i < 3; ++i) {
+    const double along = axes.col(i).dot(view.n_W);
+    if (1.0 - std::abs(along) <= kLeans) return std::copysign(1.0, along) * axes.col(i);
+  }
+  return view.n_W;
+}
+
+/// Where the plane of a support lies along the normal, m.
+double height_of(const WorldState& state, const Scratch& work, const Patch& patch, const Vector3& n_W) {
+  const View view = view_of(work, patch);
   const BodyWork& fixed = work.bodies[static_cast<std::size_t>(view.fixed)];
   const Contact& contact = work.contacts[static_cast<std::size_t>(patch.first_contact)];
   const PairPoint& point = state.pairs[patch.pair].points[static_cast<std::size_t>(contact.point)];
-  return view.n_W.dot(fixed.p_WB + fixed.R_WB * (view.is_b ? point.p_A : point.p_B));
+  return n_W.dot(fixed.p_WB + fixed.R_WB * (view.is_b ? point.p_A : point.p_B));
 }
 
 double distance(const SupportPoint& p, const SupportPoint& q) { return std::hypot(p.x - q.x, p.y - q.y); }
@@ -216,20 +234,56 @@ void even_plane(const WorldModel& model, SharedSupports& shared, WorldState& sta
   }
 }
 
+/// Normal and tangents of a patch, and what depends on them. Its rows no longer stand as in the step before.
+void set_axes(const Vector3& n, const Vector3& t1, Patch& patch, Scratch& work) {
+  patch.n = n, patch.t1 = t1, patch.t2 = n.cross(t1);
+  patch.is_kept = false;
+  const BodyWork& a = work.bodies[static_cast<std::size_t>(patch.body_a)];
+  const BodyWork& b = work.bodies[static_cast<std::size_t>(patch.body_b)];
+  for (int i = patch.first_contact; i < patch.first_contact + patch.contact_count; ++i) {
+    Contact& contact = work.contacts[static_cast<std::size_t>(i)];
+    contact.approach = n.dot((b.velocity_start + b.angular_start.cross(contact.p_WQ - b.p_WBcm)) -
+                             (a.velocity_start + a.angular_start.cross(contact.p_WQ - a.p_WBcm)));
+  }
+}
+
+/// The axes of the pair, should the patch of the step before have had those of a plane.
+void restore_axes(const WorldState& state, Patch& patch, Scratch& work) {
+  const PairState& pair = state.pairs[patch.pair];
+  const Matrix3& R_WA = work.bodies[static_cast<std::size_t>(patch.body_a)].R_WB;
+  const Vector3 n = R_WA * pair.n_A;
+  if (patch.n != n) set_axes(n, R_WA * pair.t_A, patch, work);
+}
+
+/// One normal for all patches of a plane: with several, no velocity of a face that slides keeps more than three of its
+/// corners in touch, and these bear all.
+void align_axes(const SharedSupports& shared, const Vector3& n_W, Scratch& work) {
+  for (const int index : shared.plane) {
+    Patch& patch = work.patches[static_cast<std::size_t>(index)];
+    const Vector3 n = view_of(work, patch).is_b ? n_W : Vector3(-n_W);
+    if (patch.n != n) set_axes(n, (patch.t1 - n.dot(patch.t1) * n).normalized(), patch, work);
+  }
+}
+
 /// The supports of one body that lie in the plane of the first of the chain, taken off the chain.
 void share_plane(const WorldModel& model, WorldState& state, Scratch& work, int& chain) {
   SharedSupports& shared = work.shared_supports;
   shared.points.clear();
   shared.plane.clear();
+  if (shared.next[static_cast<std::size_t>(chain)] < 0) {  // the only support
+    chain = -1;
+    return;
+  }
   const Patch& first = work.patches[static_cast<std::size_t>(chain)];
-  const View view = view_of(work, first);
-  const double height = height_of(state, work, first, view);
+  const Vector3 n_W = support_normal(model, state, work, first);
+  const double height = height_of(state, work, first, n_W);
   int* link = &chain;
   while (*link >= 0) {
     const int index = *link;
     const Patch& patch = work.patches[static_cast<std::size_t>(index)];
-    const View other = view_of(work, patch);
-    if (1.0 - view.n_W.dot(other.n_W) > kParallel || std::abs(height_of(state, work, patch, other) - height) > kFlush) {
+    const bool is_near = 1.0 - n_W.dot(view_of(work, patch).n_W) <= 4.0 * kLeans;  // else not worth a closer look
+    if (!is_near || 1.0 - n_W.dot(support_normal(model, state, work, patch)) > kParallel ||
+        std::abs(height_of(state, work, patch, n_W) - height) > kFlush) {
       link = &shared.next[static_cast<std::size_t>(index)];
       continue;
     }
@@ -249,6 +303,7 @@ void share_plane(const WorldModel& model, WorldState& state, Scratch& work, int&
     add_points(state, work, patch, axes, static_cast<int>(i), shared.points);
   }
   if (!is_flat(shared.points)) return;
+  align_axes(shared, n_W, work);
   const bool are_faces = std::all_of(shared.plane.begin(), shared.plane.end(), [&](int index) {
     return model.laws[work.patches[static_cast<std::size_t>(index)].law].bearing != Bearing::Corners;
   });
@@ -285,6 +340,7 @@ void mark_covered_contacts(const WorldModel& model, WorldState& state, Scratch& 
     if (!may_share(model, work, patch)) continue;
     for (int k = patch.first_contact; k < patch.first_contact + patch.contact_count; ++k)
       work.contacts[static_cast<std::size_t>(k)].is_covered = false;
+    if (patch.is_kept) restore_axes(state, patch, work);
     const int moving = view_of(work, patch).moving;
     int& first = shared.first[static_cast<std::size_t>(moving)];
     if (first < 0) shared.touched.push_back(moving);
