@@ -155,6 +155,8 @@ internal::Scratch::Scratch(const WorldModel& model, int threads) : pool(threads)
     workers.push_back({NewtonScratch(n, row_capacity), PositionCorrection(n, row_capacity), {}, {}});
     workers.back().element_bodies.reserve(n);
   }
+  solver_threads.pool = &pool;
+  for (IslandWorker& worker : workers) solver_threads.scratches.push_back(&worker.newton);
   keys.reserve(2 * model.pair_capacity + 1);
   old_keys.reserve(model.pair_capacity);
   new_keys.reserve(model.pair_capacity + 1);

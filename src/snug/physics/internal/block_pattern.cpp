@@ -24,9 +24,9 @@ std::size_t BlockPattern::max_blocks(std::size_t bodies) {
 BlockPattern::BlockPattern(std::size_t bodies, std::size_t connections)
     : max_fill_(max_fill(bodies)),
       column_(bodies + 1),
-      fill_row_(max_fill_),
+      fill_row_(new int[max_fill_]),
       fronts_(bodies),
-      rows_(max_fill_),
+      rows_(new int[max_fill_]),
       updates_(max_fill_) {
   connections_.reserve(connections);
   last_connections_.reserve(connections);
@@ -238,8 +238,7 @@ bool BlockPattern::make_fronts() {
     front.row_begin = rows;
     for (std::size_t e = column_[place]; e < column_[place + 1]; ++e) rows_[rows++] = rank_[at(fill_row_[e])];
     front.row_end = rows;
-    std::sort(rows_.begin() + static_cast<std::ptrdiff_t>(front.row_begin),
-              rows_.begin() + static_cast<std::ptrdiff_t>(rows));
+    std::sort(rows_.get() + front.row_begin, rows_.get() + rows);
     front.panel = blocks;
     blocks += at(front.width * front.height());
     if (blocks > most) return false;
@@ -263,7 +262,8 @@ bool BlockPattern::list_updates() {
   };
   for (int f = 0; f < front_count_; ++f) fronts_[at(f)].update_end = 0;
   each_update([&](Front& target, const Update&) { ++target.update_end, ++total; });
-  if (total > updates_.size()) return false;
+  if (total > updates_.capacity()) return false;
+  updates_.resize(total);
   std::size_t begin = 0;
   for (int f = 0; f < front_count_; ++f) {
     Front& front = fronts_[at(f)];

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <vector>
+
+#include "snug/core/bounded_vector.hpp"
 
 namespace snug::physics::internal {
 
@@ -48,8 +51,8 @@ class BlockPattern {
   [[nodiscard]] const Front& front(int number) const { return fronts_[static_cast<std::size_t>(number)]; }
   [[nodiscard]] int front_of(int rank) const { return front_of_[static_cast<std::size_t>(rank)]; }
   /// Ranks, ascending within a front.
-  [[nodiscard]] const int* rows(const Front& front) const { return rows_.data() + front.row_begin; }
-  [[nodiscard]] const Update* updates() const { return updates_.data(); }
+  [[nodiscard]] const int* rows(const Front& front) const { return rows_.get() + front.row_begin; }
+  [[nodiscard]] const Update* updates() const { return updates_.begin(); }
   /// Place of a later rank among the rows of a front.
   [[nodiscard]] int row_place(const Front& front, int rank) const;
 
@@ -79,15 +82,16 @@ class BlockPattern {
   int stamp_ = 0, least_degree_ = 0;
   std::size_t fill_ = 0;
   std::vector<std::size_t> column_;  ///< of each place in the order of degree: first entry of fill_row_, and the end
-  Index fill_row_;                   ///< bodies
+  std::unique_ptr<int[]> fill_row_;  ///< bodies; memory that becomes real where it is written to, as that of rows_
   Index rank_, body_;
   Index by_degree_;  ///< bodies in the order of degree
   Index parent_, first_child_, next_child_, heaviest_, fill_of_;
 
   std::vector<Front> fronts_;
   int front_count_ = 0;
-  Index front_of_, rows_;
-  std::vector<Update> updates_;
+  Index front_of_;
+  std::unique_ptr<int[]> rows_;
+  BoundedVector<Update> updates_;
 };
 
 }  // namespace snug::physics::internal

@@ -24,4 +24,10 @@ void for_ranges(WorkerPool& pool, std::size_t count, const Job& job) {
   });
 }
 
+/// nullptr: one thread.
+template <class Job>
+void for_ranges(WorkerPool* pool, std::size_t count, const Job& job) {
+  pool != nullptr ? for_ranges(*pool, count, job) : job(std::size_t{0}, count);
+}
+
 }  // namespace snug::physics::internal

@@ -2,13 +2,80 @@
 #include "snug/physics/internal/contact_newton.hpp"
 
 #include <algorithm>
+#include <atomic>
+
+#include "snug/physics/internal/chunks.hpp"
 
 namespace snug::physics::internal {
 namespace {
 
 constexpr int kRounds = 5;  ///< in which groups are found anew, since contacts between them have closed
 
+/// Of groups that are solved side by side; with fewer, one thread has done them before another is there.
+constexpr std::size_t kLeastSideBySide = 100;  // rows
+
+bool is_small(const RowGroups& groups, std::size_t group) {
+  return static_cast<std::ptrdiff_t>(groups.row_count(group)) < kSharedGroup;
+}
+
+/// One group of those found in `groups`, by what one thread works with.
+GroupOutcome solve_open_group(const Residuals& residuals, const RowGroups& groups, std::size_t index, double* u,
+                              NewtonScratch& work, bool is_nearly_solved, WorkerPool* pool) {
+  const std::span<Row> rows = work.open_group.open(groups, index, pool);
+  const int iterations = solve_group(residuals, rows, u, work.group, &work.open_group, is_nearly_solved);
+  work.open_group.close();
+  return {iterations, work.group.is_infeasible};
+}
+
+void add_outcome(const GroupOutcome& part, GroupOutcome& outcome) {
+  outcome.iterations = std::max(outcome.iterations, part.iterations);
+  outcome.is_infeasible |= part.is_infeasible;
+}
+
+/// All groups found: they share no body, so whether they are solved one after the other or side by side, and by which
+/// thread, changes nothing.
+GroupOutcome solve_groups(const Residuals& residuals, double* u, NewtonScratch& work, bool is_nearly_solved) {
+  const RowGroups& groups = work.groups;
+  const SolverThreads* threads = work.group.threads;
+  GroupOutcome outcome;
+  std::size_t small_rows = 0;
+  for (std::size_t i = 0; i < groups.count(); ++i) {
+    if (threads != nullptr && is_small(groups, i)) {
+      small_rows += groups.row_count(i);
+    } else {
+      add_outcome(solve_open_group(residuals, groups, i, u, work, is_nearly_solved, pool_of(threads)), outcome);
+    }
+  }
+  if (small_rows == 0) return outcome;
+  const auto solve = [&](int index, int worker) {
+    const auto group = static_cast<std::size_t>(index);
+    if (!is_small(groups, group)) return;
+    NewtonScratch& mine = *threads->scratches[static_cast<std::size_t>(worker)];
+    add_outcome(solve_open_group(residuals, groups, group, u, mine, is_nearly_solved, nullptr), mine.side_by_side);
+  };
+  for (NewtonScratch* scratch : threads->scratches) scratch->side_by_side = {};
+  const int count = static_cast<int>(groups.count());
+  if (small_rows >= kLeastSideBySide) {
+    threads->pool->run(count, solve);
+  } else {
+    for (int i = 0; i < count; ++i) solve(i, 0);
+  }
+  for (const NewtonScratch* scratch : threads->scratches) add_outcome(scratch->side_by_side, outcome);
+  return outcome;
+}
+
 }  // namespace
+
+double worst_residual(const SolverThreads* threads, const Row* first, const Row* end, const double* u) noexcept {
+  std::atomic<double> worst{0.0};
+  for_ranges(pool_of(threads), static_cast<std::size_t>(end - first), [&](std::size_t begin, std::size_t past) {
+    const double mine = worst_residual(first + begin, first + past, u);
+    double most = worst;
+    while (mine > most && !worst.compare_exchange_weak(most, mine)) {
+    }
+  });
+  return worst;
+}
 
 int newton_rows(const Residuals& residuals, Row* first, Row* end, double* u, NewtonScratch& work) noexcept {
   int iterations = 0;
@@ -16,17 +83,14 @@ int newton_rows(const Residuals& residuals, Row* first, Row* end, double* u, New
   for (int round = 0; round < kRounds; ++round) {
     const bool is_first = round == 0;
     const double enough = is_first ? residuals.wanted : residuals.accepted;
-    if (!(work.groups.find(first, end, u, enough) > enough)) return iterations;  // the caller says what is not finite
-    int most = 0;
-    for (std::size_t i = 0; i < work.groups.count(); ++i) {
-      most = std::max(most, solve_group(residuals, work.groups.open(i), u, work.group, &work.groups, !is_first));
-      work.groups.close();
-      work.is_infeasible |= work.group.is_infeasible;
-    }
-    iterations += most;
+    if (!(work.groups.find(first, end, u, enough, pool_of(work.group.threads)) > enough))
+      return iterations;  // the caller says what is not finite
+    const GroupOutcome outcome = solve_groups(residuals, u, work, !is_first);
+    work.is_infeasible = outcome.is_infeasible;
+    iterations += outcome.iterations;
     if (work.is_infeasible) return iterations;
   }
-  if (worst_residual(first, end, u) <= residuals.accepted) return iterations;
+  if (worst_residual(work.group.threads, first, end, u) <= residuals.accepted) return iterations;
   return iterations + solve_group(residuals, {first, end}, u, work.group, nullptr, true);
 }
 

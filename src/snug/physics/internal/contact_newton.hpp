@@ -4,8 +4,10 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <vector>
 
+#include "snug/core/worker_pool.hpp"
 #include "snug/physics/internal/contact_row.hpp"
 #include "snug/physics/internal/contact_system.hpp"
 #include "snug/physics/internal/row_clusters.hpp"
@@ -20,7 +22,18 @@ struct Residuals {
 };
 
 struct ClusterScratch;
+struct NewtonScratch;
 class PackedSweeps;
+
+/// Groups of as many rows are solved one after the other, each by all threads; smaller ones side by side.
+constexpr std::ptrdiff_t kSharedGroup = 1000;
+
+/// Threads for the groups of one island, and what each of them solves with; the first is the one that calls.
+struct SolverThreads {
+  WorkerPool* pool = nullptr;  ///< of as many threads as there are scratches
+  std::vector<NewtonScratch*> scratches;
+};
+inline WorkerPool* pool_of(const SolverThreads* threads) { return threads != nullptr ? threads->pool : nullptr; }
 
 /// What a group of rows is solved with.
 struct GroupScratch {
@@ -35,7 +48,8 @@ struct GroupScratch {
   std::unique_ptr<PackedSweeps> packed;                 ///< where there are clusters
   std::vector<double> u, u_free, u_start, error, step;  ///< 6 per active body
   std::unique_ptr<ClusterScratch> clusters;
-  bool is_infeasible = false;  ///< the group that was solved last: no velocities keep its contacts apart
+  bool is_infeasible = false;              ///< the group that was solved last: no velocities keep its contacts apart
+  const SolverThreads* threads = nullptr;  ///< for large groups; nullptr: only the one that calls
 };
 
 struct ClusterScratch {
@@ -43,21 +57,31 @@ struct ClusterScratch {
   GroupScratch group;
 };
 
+struct GroupOutcome {
+  int iterations = 0;
+  bool is_infeasible = false;
+};
+
 struct NewtonScratch {
-  NewtonScratch(std::size_t bodies, std::size_t rows) : groups(bodies, rows), group(bodies, rows) {}
+  NewtonScratch(std::size_t bodies, std::size_t rows) : groups(bodies, rows), open_group(rows), group(bodies, rows) {}
 
   RowGroups groups;
-  GroupScratch group;
+  OpenGroup open_group;
+  GroupScratch group;          ///< with the threads that may be used
   bool is_infeasible = false;  ///< the rows that were solved last
+  GroupOutcome side_by_side;   ///< of the groups that this thread has solved beside others
 };
 
 /// Improves lambda of a group's rows and u (consistent with each other) until the residual is accepted, or keeps the
-/// best. `groups`: has the group open and watches its idle rows; may be nullptr. `is_nearly_solved`: but for few rows.
-/// Returns the number of Newton steps.
-int solve_group(const Residuals& residuals, std::span<Row> rows, double* u, GroupScratch& work, RowGroups* groups,
+/// best. `open_group`: watches its idle rows; may be nullptr. `is_nearly_solved`: but for few rows. Returns the number
+/// of Newton steps.
+int solve_group(const Residuals& residuals, std::span<Row> rows, double* u, GroupScratch& work, OpenGroup* open_group,
                 bool is_nearly_solved) noexcept;
 
-/// The same for the rows of an island.
+/// On as many threads as there are. `threads` may be nullptr.
+double worst_residual(const SolverThreads* threads, const Row* first, const Row* end, const double* u) noexcept;
+
+/// solve_group() for the rows of an island.
 int newton_rows(const Residuals& residuals, Row* first, Row* end, double* u, NewtonScratch& work) noexcept;
 
 }  // namespace snug::physics::internal

@@ -278,47 +278,56 @@ void drop_impulse(Row& row) {
   std::fill_n(row.lambda, 3, 0.0);
 }
 
+void build_patch_rows(const WorldModel& model, const WorldState& state, Scratch& work, const Patch& patch, bool is_heap,
+                      bool is_first) {
+  Row* row = work.rows.begin() + patch.first_row;
+  const BodyWork& a = work.bodies[static_cast<std::size_t>(patch.body_a)];
+  const BodyWork& b = work.bodies[static_cast<std::size_t>(patch.body_b)];
+  const auto row_index = static_cast<std::size_t>(patch.first_row);
+  const bool is_kept = patch.is_kept && a.is_steady && b.is_steady && row->contact == patch.first_contact &&
+                       row->kind == RowKind::Contact &&
+                       row_index + static_cast<std::size_t>(patch.row_count) <= work.last_rows;
+  if (!is_kept) {
+    const Sides sides{a, b, side_of(work, a, patch, patch.way_a, -1.0), side_of(work, b, patch, patch.way_b, 1.0)};
+    for (int k = 0; k < patch.contact_count; ++k) {
+      prefetch(row + k + 4);
+      fill_contact_row(model, state, work, patch, sides, patch.first_contact + k, row[k]);
+    }
+  }
+  const int bearing = count_bearing(model, work, patch, row);
+  for (int k = patch.first_contact; k < patch.first_contact + patch.contact_count; ++k, ++row) {
+    if (is_kept) prefetch(row + 4);
+    const Contact& contact = work.contacts[static_cast<std::size_t>(k)];
+    fill_law(model, patch, contact, relative_velocity(*row, 0, work.u.data()), bearing, is_heap, *row);
+    if (patch.moves_friction) row->mu *= work.friction_points[static_cast<std::size_t>(k)].fraction;
+    if (!is_kept) finish_row(*row);
+    if (!is_first) continue;
+    if (patch.is_swept) {
+      std::fill_n(row->lambda, 3, 0.0);
+    } else if (!is_kept) {
+      const auto& impulse = state.pairs[patch.pair].impulses[static_cast<std::size_t>(contact.point)];
+      std::copy(impulse.begin(), impulse.end(), row->lambda);
+    }
+    row->is_changed = !is_kept;
+    if (contact.is_covered) drop_impulse(*row);
+    cut_to_cone(*row);
+  }
+  if (patch.row_count > patch.contact_count)
+    (void)build_turning_rows(model, state, work, patch, is_kept, is_first, row);
+}
+
 }  // namespace
 
-void build_rows(const WorldModel& model, const WorldState& state, Scratch& work, const Island& island, bool is_first) {
-  Row* row = work.rows.begin() + island.first_row;
+void build_rows(const WorldModel& model, const WorldState& state, Scratch& work, const Island& island, bool is_first,
+                WorkerPool* pool) {
   const bool is_heap = island.end_row - island.first_row >= kHeapRows;
-  for (int i = island.first_patch; i < island.end_patch; ++i) {
-    const Patch& patch = work.patches[static_cast<std::size_t>(work.patch_order[static_cast<std::size_t>(i)])];
-    const BodyWork& a = work.bodies[static_cast<std::size_t>(patch.body_a)];
-    const BodyWork& b = work.bodies[static_cast<std::size_t>(patch.body_b)];
-    const auto row_index = static_cast<std::size_t>(row - work.rows.begin());
-    const bool is_kept = patch.is_kept && a.is_steady && b.is_steady && row->contact == patch.first_contact &&
-                         row->kind == RowKind::Contact &&
-                         row_index + static_cast<std::size_t>(patch.row_count) <= work.last_rows;
-    if (!is_kept) {
-      const Sides sides{a, b, side_of(work, a, patch, patch.way_a, -1.0), side_of(work, b, patch, patch.way_b, 1.0)};
-      for (int k = 0; k < patch.contact_count; ++k) {
-        prefetch(row + k + 4);
-        fill_contact_row(model, state, work, patch, sides, patch.first_contact + k, row[k]);
-      }
+  const auto count = static_cast<std::size_t>(island.end_patch - island.first_patch);
+  for_ranges(pool, count, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      const int patch = work.patch_order[static_cast<std::size_t>(island.first_patch) + i];
+      build_patch_rows(model, state, work, work.patches[static_cast<std::size_t>(patch)], is_heap, is_first);
     }
-    const int bearing = count_bearing(model, work, patch, row);
-    for (int k = patch.first_contact; k < patch.first_contact + patch.contact_count; ++k, ++row) {
-      if (is_kept) prefetch(row + 4);
-      const Contact& contact = work.contacts[static_cast<std::size_t>(k)];
-      fill_law(model, patch, contact, relative_velocity(*row, 0, work.u.data()), bearing, is_heap, *row);
-      if (patch.moves_friction) row->mu *= work.friction_points[static_cast<std::size_t>(k)].fraction;
-      if (!is_kept) finish_row(*row);
-      if (!is_first) continue;
-      if (patch.is_swept) {
-        std::fill_n(row->lambda, 3, 0.0);
-      } else if (!is_kept) {
-        const auto& impulse = state.pairs[patch.pair].impulses[static_cast<std::size_t>(contact.point)];
-        std::copy(impulse.begin(), impulse.end(), row->lambda);
-      }
-      row->is_changed = !is_kept;
-      if (contact.is_covered) drop_impulse(*row);
-      cut_to_cone(*row);
-    }
-    if (patch.row_count > patch.contact_count)
-      row = build_turning_rows(model, state, work, patch, is_kept, is_first, row);
-  }
+  });
 }
 
 }  // namespace snug::physics::internal

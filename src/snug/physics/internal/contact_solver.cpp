@@ -139,7 +139,7 @@ SolveResult solve_rows(const StepSettings& settings, const Residuals& residuals,
       // friction changes in the normal velocity); later visits moved it by at most the sum of their changes.
       result.residual = change * static_cast<double>(end - first + 1);
       if (result.residual <= residuals.wanted) return result;
-      result.residual = worst_residual(first, end, u);
+      result.residual = worst_residual(newton.group.threads, first, end, u);
       if (result.residual <= residuals.wanted) return result;
     }
     const bool is_slow = change > patience.slow * changes[0];
@@ -150,7 +150,7 @@ SolveResult solve_rows(const StepSettings& settings, const Residuals& residuals,
       result.iterations += newton_rows(residuals, first, end, u, newton);
       result.is_infeasible = newton.is_infeasible;
     }
-    result.residual = worst_residual(first, end, u);
+    result.residual = worst_residual(newton.group.threads, first, end, u);
     if (result.residual <= residuals.accepted) return result;
     if (result.is_infeasible) break;
   }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "snug/physics/internal/chunks.hpp"
 #include "snug/physics/internal/contact_newton.hpp"
 #include "snug/physics/internal/packed_sweeps.hpp"
 
@@ -76,14 +77,15 @@ void change_of_velocity(const Row& row, const double* u, double (&xi)[3]) {
 /// One group: its rows, the velocities of its bodies, scratch. The impulses with the least residual are kept.
 class GroupProblem {
  public:
-  GroupProblem(const Residuals& residuals, std::span<Row> rows, double* u, GroupScratch& work, RowGroups* groups)
+  GroupProblem(const Residuals& residuals, std::span<Row> rows, double* u, GroupScratch& work, OpenGroup* open_group)
       : tolerance_(residuals.accepted),
         wanted_(residuals.wanted),
         first_(rows.data()),
         end_(rows.data() + rows.size()),
         u_(u),
         work_(work),
-        groups_(groups) {}
+        open_group_(open_group),
+        threads_(std::ssize(rows) >= kSharedGroup ? work.threads : nullptr) {}
 
   int solve(bool is_nearly_solved);
 
@@ -100,6 +102,7 @@ class GroupProblem {
   void wake();
   void apply_impulses();
   void measure();
+  void find_residuals();
   void keep_best();
   void restore_best();
   bool take_step();
@@ -115,7 +118,11 @@ class GroupProblem {
   [[nodiscard]] double within_reach() const { return std::max(wanted_, kSingleResidual * tolerance_); }
   /// Whether factors of the whole cost more than many sweeps.
   [[nodiscard]] bool is_large() const { return work_.clusters != nullptr && end_ - first_ >= kLargeGroup; }
+  /// Whether it is swept in halves, by any number of threads.
+  [[nodiscard]] bool is_cut() const { return end_ - first_ >= kSharedGroup; }
+  [[nodiscard]] WorkerPool* pool() const { return pool_of(threads_); }
   void solve_clusters();
+  void solve_each(const Residuals& residuals, ClusterScratch& clusters);
   void linearise();
 
   void augment(const Care& care);
@@ -132,7 +139,8 @@ class GroupProblem {
   Row* end_;
   double* u_;
   GroupScratch& work_;
-  RowGroups* groups_;
+  OpenGroup* open_group_;
+  const SolverThreads* threads_;  ///< that it may use, or nullptr: others are solved beside it
   double residual_ = 0.0, best_ = 0.0;
   bool has_room_ = true;   ///< for the linear system
   bool is_proof_ = false;  ///< only rigid contacts, without friction
@@ -161,8 +169,8 @@ void GroupProblem::start() {
 
 /// Takes in the idle contacts that close.
 void GroupProblem::wake() {
-  if (groups_ == nullptr) return;
-  for (std::size_t count = groups_->wake(u_); count > 0; --count) add_row(*end_++);
+  if (open_group_ == nullptr) return;
+  for (std::size_t count = open_group_->wake(u_); count > 0; --count) add_row(*end_++);
 }
 
 /// u from the impulses of the rows.
@@ -173,12 +181,16 @@ void GroupProblem::apply_impulses() {
 
 void GroupProblem::measure() {
   wake();
+  find_residuals();
   residual_ = 0.0;
-  each_row([&](const Row& row, NewtonRow& newton) {
-    newton.residual = natural_map(row, u_);
-    residual_ = std::max(residual_, newton.residual);
-  });
+  each_row([&](const Row&, const NewtonRow& newton) { residual_ = std::max(residual_, newton.residual); });
   keep_best();
+}
+
+void GroupProblem::find_residuals() {
+  for_ranges(pool(), static_cast<std::size_t>(end_ - first_), [this](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) work_.rows[i].residual = natural_map(first_[i], u_);
+  });
 }
 
 void GroupProblem::keep_best() {
@@ -278,10 +290,10 @@ void GroupProblem::take_momentum(double momentum) {
 bool GroupProblem::run_packed_sweeps(int count, double few) {
   if (packed_rows_ < 0) return false;
   if (packed_rows_ != end_ - first_) {
-    packed_rows_ = work_.packed->pack(first_, work_.system.patches(), bodies()) ? end_ - first_ : -1;
+    packed_rows_ = work_.packed->pack(first_, work_.system.patches(), bodies(), is_cut(), pool()) ? end_ - first_ : -1;
     if (packed_rows_ < 0) return false;
   }
-  (void)work_.packed->run(first_, u_, {count, kMostMomentum, within_reach(), few});
+  (void)work_.packed->run(first_, u_, {count, kMostMomentum, within_reach(), few}, pool());
   return true;
 }
 
@@ -444,6 +456,17 @@ void GroupProblem::augment(const Care& care) {
   restore_best();
 }
 
+/// Clusters share no body: each can be solved by any thread.
+void GroupProblem::solve_each(const Residuals& residuals, ClusterScratch& clusters) {
+  const auto solve = [&](int i, int worker) {
+    GroupScratch& group = worker == 0 ? clusters.group : threads_->scratches[at(worker)]->group.clusters->group;
+    (void)solve_group(residuals, clusters.rows[at(i)], u_, group, nullptr, false);
+  };
+  const int count = static_cast<int>(clusters.rows.count());
+  if (pool() != nullptr) return pool()->run(count, solve);
+  for (int i = 0; i < count; ++i) solve(i, 0);
+}
+
 /// A few contacts keep changing their status while all others are solved: these are solved among themselves, then a
 /// generalized step, or in large groups a few sweeps, carry what that changes to the rest.
 void GroupProblem::solve_clusters() {
@@ -459,9 +482,7 @@ void GroupProblem::solve_clusters() {
       continue;
     }
     ++rings;
-    for (std::size_t i = 0; i < clusters.rows.count(); ++i) {
-      (void)solve_group(residuals, clusters.rows[i], u_, clusters.group, nullptr, false);
-    }
+    solve_each(residuals, clusters);
     clusters.rows.put_back(first_);
     measure();
     if (is_solved()) continue;
@@ -532,9 +553,9 @@ GroupScratch::GroupScratch(std::size_t bodies, std::size_t row_capacity, int lev
 GroupScratch::~GroupScratch() = default;
 GroupScratch::GroupScratch(GroupScratch&&) noexcept = default;
 
-int solve_group(const Residuals& residuals, std::span<Row> rows, double* u, GroupScratch& work, RowGroups* groups,
+int solve_group(const Residuals& residuals, std::span<Row> rows, double* u, GroupScratch& work, OpenGroup* open_group,
                 bool is_nearly_solved) noexcept {
-  GroupProblem problem(residuals, rows, u, work, groups);
+  GroupProblem problem(residuals, rows, u, work, open_group);
   return problem.solve(is_nearly_solved);
 }
 

@@ -63,12 +63,15 @@ void build_islands(const WorldInput& input, Scratch& work) {
     island.end_patch = island.first_patch;  // filled below
     island.first_row = rows;
     rows += island.end_row;
-    island.end_row = rows;
+    island.end_row = island.first_row;  // filled below
   }
   work.row_count = rows;
   for (std::size_t i = 0; i < work.patches.size(); ++i) {
-    Island& island = work.islands[static_cast<std::size_t>(work.patches[i].island)];
+    Patch& patch = work.patches[i];
+    Island& island = work.islands[static_cast<std::size_t>(patch.island)];
     work.patch_order[static_cast<std::size_t>(island.end_patch++)] = static_cast<int>(i);
+    patch.first_row = island.end_row;
+    island.end_row += patch.row_count;
   }
 }
 

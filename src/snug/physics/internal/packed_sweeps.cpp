@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "snug/core/wide_vectors.hpp"
+#include "snug/physics/internal/chunks.hpp"
 #include "snug/physics/internal/contact_system.hpp"
 
 namespace snug::physics::internal {
@@ -250,21 +251,22 @@ void sweep_by_four(const Sweep& sweep, Change& change) { sweep_blocks<Lanes4>(sw
 [[gnu::target("avx512f,avx512vl,avx512dq")]] void sweep_in_registers(const Sweep& sweep, Change& change) {
   sweep_blocks<Lanes8>(sweep, change);
 }
-Kernel kernel(int most_lanes) {
+Kernel choose_kernel(int most_lanes) {
   if (most_lanes < kLanes || !__builtin_cpu_supports("avx2")) return sweep_by_four;
   const bool has_registers = __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq");
   return has_registers ? sweep_in_registers : sweep_by_eight;
 }
 #else
-Kernel kernel(int) { return sweep_by_four; }
+Kernel choose_kernel(int) { return sweep_by_four; }
 #endif
 
 }  // namespace
 
 PackedSweeps::PackedSweeps(std::size_t bodies, std::size_t rows)
-    : place_(bodies),
-      velocities_(bodies + 1),
-      old_velocities_(bodies + 1),
+    : halves_(bodies, rows),
+      place_(bodies),
+      velocities_(bodies + 2),
+      old_velocities_(bodies + 2),
       blocks_(rows),
       points_(rows / kWorstUse + kMostPoints),
       chunks_(rows),
@@ -301,19 +303,51 @@ void PackedSweeps::add_chunk(Chunk chunk, int a, int b) {
   chunks_.push_back(chunk);
 }
 
-bool PackedSweeps::pack(const Row* rows, std::span<const RowPatch> patches, std::span<const int> bodies) {
-  for (std::size_t i = 0; i < bodies.size(); ++i) place_[at(bodies[i])] = static_cast<std::int32_t>(i + 1);
-  velocities_.resize(bodies.size() + 1);
-  old_velocities_.resize(bodies.size() + 1);
-  blocks_.clear(), chunks_.clear(), open_.clear();
-  row_count_ = 0;
+/// The bodies of a half stand behind each other. What does not move has a place in each half, before the first and
+/// behind the last body, so that threads do not write to the same.
+void PackedSweeps::place_bodies(std::span<const int> bodies, bool is_cut) {
+  std::int32_t place = 0;
+  for (const auto half : {GroupHalves::First, GroupHalves::Second}) {
+    for (const int body : bodies) {
+      if ((is_cut ? halves_.of(body) : GroupHalves::First) == half) place_[at(body)] = ++place;
+    }
+    parts_[half].end_place = at(place) + 1;
+  }
+  Part& second = parts_[GroupHalves::Second];
+  second.first_place = parts_[GroupHalves::First].end_place;
+  ++second.end_place;
+  velocities_.resize(second.end_place);
+  old_velocities_.resize(second.end_place);
+}
+
+void PackedSweeps::add_part(GroupHalves::Part which, std::span<const RowPatch> patches, bool is_cut) {
+  Part& part = parts_[at(which)];
+  part.first_block = blocks_.size();
+  open_.clear();
   for (const RowPatch& patch : patches) {
+    if ((is_cut ? halves_.of(patch) : GroupHalves::First) != which) continue;
     const int a = patch.ia >= 0 ? place_[at(patch.ia)] : 0, b = patch.ib >= 0 ? place_[at(patch.ib)] : 0;
     for (int i = 0; i < patch.count; i += kMostPoints) {
       add_chunk({patch.first + i, std::min(kMostPoints, patch.count - i), 0, 0}, a, b);
     }
     row_count_ += patch.count;
   }
+  part.end_block = blocks_.size();
+  if (which != GroupHalves::Second) return;
+  const auto fixed = static_cast<std::int32_t>(part.end_place - 1);
+  for (std::size_t i = part.first_block; i < part.end_block; ++i) {
+    std::replace(blocks_[i].a, blocks_[i].a + kLanes, 0, fixed);
+    std::replace(blocks_[i].b, blocks_[i].b + kLanes, 0, fixed);
+  }
+}
+
+bool PackedSweeps::pack(const Row* rows, std::span<const RowPatch> patches, std::span<const int> bodies, bool is_cut,
+                        WorkerPool* pool) {
+  if (is_cut) halves_.cut(patches, bodies);
+  place_bodies(bodies, is_cut);
+  blocks_.clear(), chunks_.clear();
+  row_count_ = 0;
+  for (const auto part : {GroupHalves::First, GroupHalves::Second, GroupHalves::Seam}) add_part(part, patches, is_cut);
   std::int32_t count = 0;
   for (Block& block : blocks_) {
     block.first = count;
@@ -321,25 +355,28 @@ bool PackedSweeps::pack(const Row* rows, std::span<const RowPatch> patches, std:
   }
   if (count > row_count_ / kWorstUse + kMostPoints) return false;
   points_.resize(at(count));
-  fill(rows);
+  fill(rows, pool);
   return true;
 }
 
-/// Calls visit(index of the row, its points, its lane).
+/// Calls visit(index of the row, its points, its lane), on several threads where there are many.
 template <class Visit>
-void PackedSweeps::each_row(const Visit& visit) {
-  for (const Chunk& chunk : chunks_) {
-    Points* points = points_.begin() + blocks_[at(chunk.block)].first;
-    for (int i = 0; i < chunk.count; ++i) visit(chunk.row + i, points[i], chunk.lane);
-  }
+void PackedSweeps::each_row(WorkerPool* pool, const Visit& visit) {
+  for_ranges(pool, chunks_.size(), [&](std::size_t first, std::size_t end) {
+    for (std::size_t k = first; k < end; ++k) {
+      const Chunk& chunk = chunks_[k];
+      Points* points = points_.begin() + blocks_[at(chunk.block)].first;
+      for (int i = 0; i < chunk.count; ++i) visit(chunk.row + i, points[i], chunk.lane);
+    }
+  });
 }
 
 /// What stays from sweep to sweep. Lanes without a row hold one that stays open.
-void PackedSweeps::fill(const Row* rows) {
+void PackedSweeps::fill(const Row* rows, WorkerPool* pool) {
   Points none{};
   std::fill_n(none.start[0], kLanes, 1.0F);
   std::fill(points_.begin(), points_.end(), none);
-  each_row([&](int index, Points& p, int lane) {
+  each_row(pool, [&](int index, Points& p, int lane) {
     const Row& row = rows[index];
     const int first = row.ia >= 0 ? 0 : 6, end = row.ib >= 0 ? 12 : 6;
     for (int i = 0; i < 3; ++i) {
@@ -356,10 +393,10 @@ void PackedSweeps::fill(const Row* rows) {
   });
 }
 
-void PackedSweeps::begin(const Row* rows, const double* u) {
+void PackedSweeps::begin(const Row* rows, const double* u, WorkerPool* pool) {
   std::fill(velocities_.begin(), velocities_.end(), std::array<float, kLanes>{});
   std::fill(old_velocities_.begin(), old_velocities_.end(), std::array<float, kLanes>{});
-  each_row([&](int index, Points& p, int lane) {
+  each_row(pool, [&](int index, Points& p, int lane) {
     const Row& row = rows[index];
     double xi[3];
     contact_velocity(row, u, xi);
@@ -372,8 +409,8 @@ void PackedSweeps::begin(const Row* rows, const double* u) {
 }
 
 /// Velocities are linear in the impulses: they go on as these do.
-void PackedSweeps::take_momentum(float momentum) {
-  for (std::size_t i = 0; i < velocities_.size(); ++i) {
+void PackedSweeps::take_momentum(const Part& part, float momentum) {
+  for (std::size_t i = part.first_place; i < part.end_place; ++i) {
     std::array<float, kLanes>&now = velocities_[i], &old = old_velocities_[i];
     for (std::size_t k = 0; k < kLanes; ++k) {
       const float value = now[k];
@@ -383,24 +420,43 @@ void PackedSweeps::take_momentum(float momentum) {
   }
 }
 
-int PackedSweeps::run(Row* rows, const double* u, const Effort& effort) {
-  begin(rows, u);
-  const Kernel sweep = kernel(effort.most_lanes);
+int PackedSweeps::run(Row* rows, const double* u, const Effort& effort, WorkerPool* pool) {
+  begin(rows, u, pool);
+  const Kernel kernel = choose_kernel(effort.most_lanes);
   const auto wanted = static_cast<float>(effort.wanted);
   float most = static_cast<float>(effort.momentum), momentum = 0.0F, least_error = -1.0F;
+  std::array<Change, 3> changes;
+  const auto sweep = [&](int index, int) {
+    const Part& part = parts_[at(index)];
+    take_momentum(part, momentum);
+    changes[at(index)] = {};
+    if (part.first_block == part.end_block) return;
+    const Sweep of_part{blocks_.begin() + part.first_block,
+                        blocks_.begin() + part.end_block,
+                        points_.begin(),
+                        velocities_.begin()->data(),
+                        momentum,
+                        wanted};
+    kernel(of_part, changes[at(index)]);
+  };
   double t = 1.0;
   int count = 0;
   while (count < effort.sweeps) {
-    take_momentum(momentum);
-    Change change;
-    sweep({blocks_.begin(), blocks_.end(), points_.begin(), velocities_.begin()->data(), momentum, wanted}, change);
+    if (pool != nullptr) {
+      pool->run(2, sweep);
+    } else {
+      sweep(0, 0), sweep(1, 0);
+    }
+    sweep(2, 0);
     ++count;
     float largest = 0.0F, uphill = 0.0F, error = 0.0F, unsolved = 0.0F;
-    for (int i = 0; i < kLanes; ++i) {
-      largest = std::max(largest, change.largest[i]);
-      uphill += change.uphill[i];
-      error += change.error[i];
-      unsolved += change.unsolved[i];
+    for (const Change& change : changes) {
+      for (int i = 0; i < kLanes; ++i) {
+        largest = std::max(largest, change.largest[i]);
+        uphill += change.uphill[i];
+        error += change.error[i];
+        unsolved += change.unsolved[i];
+      }
     }
     if (largest <= kStill * wanted ||
         (count >= kLeastSweeps && static_cast<double>(unsolved) <= effort.few * row_count_))
@@ -413,7 +469,7 @@ int PackedSweeps::run(Row* rows, const double* u, const Effort& effort) {
     momentum = starts_anew ? 0.0F : std::min(most, static_cast<float>((t - 1.0) / next));
     t = starts_anew ? 1.0 : next;
   }
-  each_row([&](int index, const Points& p, int lane) {
+  each_row(pool, [&](int index, const Points& p, int lane) {
     for (int i = 0; i < 3; ++i) rows[index].lambda[i] = static_cast<double>(p.lambda[i][lane]);
   });
   return count;

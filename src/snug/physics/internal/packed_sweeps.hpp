@@ -9,15 +9,19 @@
 #include <vector>
 
 #include "snug/core/bounded_vector.hpp"
+#include "snug/core/worker_pool.hpp"
 #include "snug/physics/internal/contact_row.hpp"
+#include "snug/physics/internal/group_halves.hpp"
 
 namespace snug::physics::internal {
 
 struct RowPatch;
 
-/// The rows of a group in single precision, in blocks of eight patches that share no body. Velocities are changes since
+/// The rows of a group in single precision, in blocks of eight patches that share no body: those of two halves whose
+/// bodies do not meet, which two threads sweep side by side, then the seam between them. Velocities are changes since
 /// the sweeps began, so rounding is small beside what is sought; what comes out is to be measured in double precision.
-/// Blocks, their order and the bytes that come out do not depend on the processor. Never allocates after construction.
+/// Blocks, their order and the bytes that come out do not depend on the processor, nor on the number of threads. Never
+/// allocates after construction.
 class PackedSweeps {
  public:
   static constexpr int kLanes = 8;
@@ -35,7 +39,7 @@ class PackedSweeps {
     Lanes lambda[3], before[3];  ///< impulse, and that before the last sweep
   };
   struct Block {
-    std::int32_t a[kLanes] = {}, b[kLanes] = {};  ///< places of the bodies; 0: one that does not move
+    std::int32_t a[kLanes] = {}, b[kLanes] = {};  ///< places of the bodies, or of one that does not move
     std::int32_t first = 0, count = 0;            ///< in points_
     std::int32_t lanes = 0;                       ///< in use
   };
@@ -49,24 +53,35 @@ class PackedSweeps {
 
   PackedSweeps(std::size_t bodies, std::size_t rows);
 
-  /// Takes in the rows of a group; they stay until the next call. False: too many share a body to go side by side.
-  [[nodiscard]] bool pack(const Row* rows, std::span<const RowPatch> patches, std::span<const int> bodies);
+  /// Takes in the rows of a group; they stay until the next call. `is_cut`: in halves, else as one. `pool`: threads to
+  /// use, or nullptr. False: too many share a body to go side by side.
+  [[nodiscard]] bool pack(const Row* rows, std::span<const RowPatch> patches, std::span<const int> bodies,
+                          bool is_cut = false, WorkerPool* pool = nullptr);
   /// Forward sweeps with Nesterov's momentum from the impulses of the packed rows and their velocities u. Leaves the
   /// impulses in the rows. Returns the number of sweeps.
-  int run(Row* rows, const double* u, const Effort& effort);
+  int run(Row* rows, const double* u, const Effort& effort, WorkerPool* pool = nullptr);
 
  private:
   /// Rows of a patch in one lane of one block.
   struct Chunk {
     std::int32_t row = 0, count = 0, block = 0, lane = 0;
   };
+  /// What is swept on one thread: its blocks, and the places of its bodies.
+  struct Part {
+    std::size_t first_block = 0, end_block = 0;
+    std::size_t first_place = 0, end_place = 0;
+  };
+  void place_bodies(std::span<const int> bodies, bool is_cut);
+  void add_part(GroupHalves::Part part, std::span<const RowPatch> patches, bool is_cut);
   void add_chunk(Chunk chunk, int a, int b);
-  void fill(const Row* rows);
-  void begin(const Row* rows, const double* u);
-  void take_momentum(float momentum);
+  void fill(const Row* rows, WorkerPool* pool);
+  void begin(const Row* rows, const double* u, WorkerPool* pool);
+  void take_momentum(const Part& part, float momentum);
   template <class Visit>
-  void each_row(const Visit& visit);
+  void each_row(WorkerPool* pool, const Visit& visit);
 
+  GroupHalves halves_;
+  std::array<Part, 3> parts_;                                ///< two halves, of which the second may be empty; the seam
   std::vector<std::int32_t> place_;                          ///< of each active body, from 1 on
   BoundedVector<std::array<float, kLanes>> velocities_;      ///< of each place; the last two numbers are none
   BoundedVector<std::array<float, kLanes>> old_velocities_;  ///< before the last sweep

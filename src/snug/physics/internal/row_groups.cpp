@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "snug/physics/internal/chunks.hpp"
+
 namespace snug::physics::internal {
 namespace {
 
@@ -15,13 +17,7 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 RowGroups::RowGroups(std::size_t bodies, std::size_t rows)
-    : state_(new State[rows]),
-      parent_(bodies),
-      group_(bodies),
-      order_(new int[rows]),
-      copies_(new Row[rows]),
-      source_(new int[rows]),
-      idle_(new IdleRow[rows]) {
+    : state_(new State[rows]), miss_(new double[rows]), parent_(bodies), group_(bodies), order_(new int[rows]) {
   groups_.reserve(bodies);
 }
 
@@ -41,16 +37,30 @@ void RowGroups::begin_bodies(const Row* first, const Row* end) {
   }
 }
 
-double RowGroups::find(Row* first, Row* end, const double* u, double residual) {
+void RowGroups::measure(const double* u, WorkerPool* pool) {
+  for_ranges(pool, row_count_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Row& row = first_[i];
+      const bool is_open = stays_open(row, u);
+      state_[i] = is_open && relative_velocity(row, 0, u) >= row.target + kIdleSpeed ? State::Idle : State::Bears;
+      miss_[i] = 0.0;
+      if (is_open) continue;
+      double xi[3];
+      contact_velocity(row, u, xi);
+      miss_[i] = natural_map(row, xi, row.lambda);
+    }
+  });
+}
+
+double RowGroups::find(Row* first, Row* end, const double* u, double residual, WorkerPool* pool) {
   first_ = first;
   row_count_ = static_cast<std::size_t>(end - first);
   begin_bodies(first, end);
+  measure(u, pool);
   double worst = 0.0;
   for (std::size_t i = 0; i < row_count_; ++i) {
-    const Row& row = first[i];
-    const bool is_open = stays_open(row, u);
-    state_[i] = is_open && relative_velocity(row, 0, u) >= row.target + kIdleSpeed ? State::Idle : State::Bears;
     if (state_[i] == State::Idle) continue;
+    const Row& row = first[i];
     int root = root_of(std::max(row.ia, row.ib));
     if (row.ia >= 0 && row.ib >= 0) {
       const int other = root_of(std::min(row.ia, row.ib));
@@ -60,10 +70,8 @@ double RowGroups::find(Row* first, Row* end, const double* u, double residual) {
       parent_[at(std::max(root, other))] = std::min(root, other);
       root = std::min(root, other);
     }
-    if (is_open) continue;
-    const double miss = natural_map(row, u);
-    worst = std::max(worst, miss);
-    if (miss > residual) group_[at(root)] = kUnsolved;
+    worst = std::max(worst, miss_[i]);
+    if (miss_[i] > residual) group_[at(root)] = kUnsolved;
   }
   number_groups();
   return worst;
@@ -108,7 +116,9 @@ void RowGroups::sort_rows() {
   }
 }
 
-void RowGroups::add_idle(const Row& row, int index) {
+OpenGroup::OpenGroup(std::size_t rows) : copies_(new Row[rows]), source_(new int[rows]), idle_(new IdleRow[rows]) {}
+
+void OpenGroup::add_idle(const Row& row, int index) {
   IdleRow& idle = idle_[idle_count_++];
   std::copy_n(row.a(0), 6, idle.a);
   std::copy_n(row.b(0), 6, idle.b);
@@ -118,23 +128,27 @@ void RowGroups::add_idle(const Row& row, int index) {
   idle.row = index;
 }
 
-std::span<Row> RowGroups::open(std::size_t group) {
-  const Group& open = groups_[group];
+std::span<Row> OpenGroup::open(const RowGroups& groups, std::size_t group, WorkerPool* pool) {
+  const RowGroups::Group& open = groups.groups_[group];
+  first_ = groups.first_;
   copy_count_ = idle_count_ = 0;
-  if (open.rows == row_count_) {
-    for (std::size_t i = 0; i < row_count_; ++i) first_[i].is_changed = true;
-    return {first_, row_count_};
+  if (open.rows == groups.row_count_) {
+    for (std::size_t i = 0; i < open.rows; ++i) first_[i].is_changed = true;
+    return {first_, open.rows};
   }
-  const int* order = order_.get() + open.end - open.idle - open.rows;
-  for (; copy_count_ < open.rows; ++copy_count_) {
-    copies_[copy_count_] = first_[order[copy_count_]];
-    source_[copy_count_] = order[copy_count_];
-  }
+  const int* order = groups.order_.get() + open.end - open.idle - open.rows;
+  copy_count_ = open.rows;
+  for_ranges(pool, copy_count_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      copies_[i] = first_[order[i]];
+      source_[i] = order[i];
+    }
+  });
   for (std::size_t i = open.rows; i < open.rows + open.idle; ++i) add_idle(first_[order[i]], order[i]);
   return {copies_.get(), copy_count_};
 }
 
-std::size_t RowGroups::wake(const double* u) {
+std::size_t OpenGroup::wake(const double* u) {
   std::size_t woken = 0;
   for (std::size_t i = 0; i < idle_count_;) {
     const IdleRow& idle = idle_[i];
@@ -153,7 +167,7 @@ std::size_t RowGroups::wake(const double* u) {
   return woken;
 }
 
-void RowGroups::close() {
+void OpenGroup::close() {
   for (std::size_t i = 0; i < copy_count_; ++i) {
     Row& row = first_[source_[i]];
     std::copy_n(copies_[i].lambda, 3, row.lambda);

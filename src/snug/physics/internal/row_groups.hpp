@@ -7,37 +7,28 @@
 #include <span>
 #include <vector>
 
+#include "snug/core/worker_pool.hpp"
 #include "snug/physics/internal/contact_row.hpp"
 
 namespace snug::physics::internal {
 
 /// An island is held together by all contacts that may matter in the step; half of them bear nothing in a pile. Those
 /// that are open and open further are idle: without them the island falls into groups that share no body. Idle contacts
-/// within a group are watched while it is solved. Never allocates after construction.
+/// within a group are watched while it is solved (OpenGroup). Never allocates after construction.
 class RowGroups {
  public:
   RowGroups(std::size_t bodies, std::size_t rows);
 
-  /// The groups in which a row misses its law by more than `residual`. Returns the largest such miss of all rows, m/s.
-  double find(Row* first, Row* end, const double* u, double residual);
+  /// The groups in which a row misses its law by more than `residual`. `pool`: threads to use, or nullptr. Returns the
+  /// largest such miss of all rows, m/s.
+  double find(Row* first, Row* end, const double* u, double residual, WorkerPool* pool);
   [[nodiscard]] std::size_t count() const { return groups_.size(); }
-
-  /// The rows of a group behind each other. One is open at a time.
-  std::span<Row> open(std::size_t group);
-  /// Adds the idle rows of the open group that close as bodies move now. Returns how many.
-  std::size_t wake(const double* u);
-  /// Gives the impulses back to the island.
-  void close();
+  /// Of a group, without the idle.
+  [[nodiscard]] std::size_t row_count(std::size_t group) const { return groups_[group].rows; }
 
  private:
+  friend class OpenGroup;
   enum class State : char { Idle, Bears };
-  /// What it takes to see whether an idle row stays idle.
-  struct alignas(16) IdleRow {
-    double a[6], b[6];
-    double least;  ///< m/s, of the normal velocity that its bodies make
-    std::int32_t ia, ib;
-    std::int32_t row;  ///< of the island
-  };
   struct Group {
     std::size_t rows = 0, end = 0;  ///< in order_: those that bear come first
     std::size_t idle = 0;
@@ -45,23 +36,50 @@ class RowGroups {
 
   [[nodiscard]] int root_of(int body);
   void begin_bodies(const Row* first, const Row* end);
+  void measure(const double* u, WorkerPool* pool);
   void number_groups();
   void sort_rows();
   [[nodiscard]] int group_of(const Row& row);
-  void add_idle(const Row& row, int index);
 
   Row* first_ = nullptr;  ///< of the island
   std::size_t row_count_ = 0;
   std::unique_ptr<State[]> state_;
-  std::vector<int> parent_;  ///< union-find over bodies
-  std::vector<int> group_;   ///< of each root: its number, or kNone, kUnsolved
+  std::unique_ptr<double[]> miss_;  ///< m/s, of each row that is not idle
+  std::vector<int> parent_;         ///< union-find over bodies
+  std::vector<int> group_;          ///< of each root: its number, or kNone, kUnsolved
   std::vector<Group> groups_;
   std::unique_ptr<int[]> order_;
+};
 
-  std::unique_ptr<Row[]> copies_;    ///< of the open group
+/// One group of RowGroups while it is solved. Groups share no body: several may be open at a time, on as many threads.
+/// Never allocates after construction.
+class OpenGroup {
+ public:
+  explicit OpenGroup(std::size_t rows);
+
+  /// The rows of a group behind each other. `groups` stays as it is until close(). `pool`:
+  /// threads to use, or nullptr.
+  std::span<Row> open(const RowGroups& groups, std::size_t group, WorkerPool* pool);
+  /// Adds the idle rows of the group that close as bodies move now. Returns how many.
+  std::size_t wake(const double* u);
+  /// Gives the impulses back to the island.
+  void close();
+
+ private:
+  /// What it takes to see whether an idle row stays idle.
+  struct alignas(16) IdleRow {
+    double a[6], b[6];
+    double least;  ///< m/s, of the normal velocity that its bodies make
+    std::int32_t ia, ib;
+    std::int32_t row;  ///< of the island
+  };
+  void add_idle(const Row& row, int index);
+
+  Row* first_ = nullptr;             ///< of the island
+  std::unique_ptr<Row[]> copies_;    ///< of the group
   std::unique_ptr<int[]> source_;    ///< of each copy: its row of the island
-  std::size_t copy_count_ = 0;       ///< 0: the open group is the island itself
-  std::unique_ptr<IdleRow[]> idle_;  ///< of the open group
+  std::size_t copy_count_ = 0;       ///< 0: the group is the island itself
+  std::unique_ptr<IdleRow[]> idle_;  ///< of the group
   std::size_t idle_count_ = 0;
 };
 

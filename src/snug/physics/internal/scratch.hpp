@@ -81,6 +81,7 @@ struct Patch {
   int first_contact = 0;
   int contact_count = 0;
   int row_count = 0;  ///< contacts, and what resists turning
+  int first_row = 0;
   int island = 0;
   double reach_from = 0.0;       ///< m, has the same contacts for any reach from here
   double reach_to = 0.0;         ///< m, to below here
@@ -156,6 +157,7 @@ struct Scratch {
 
   WorkerPool pool;
   std::vector<IslandWorker> workers;  ///< one of each of the pool's
+  SolverThreads solver_threads;       ///< all of them, for one island
 
   std::uint64_t stamp = 0;  ///< of the state that the memories and the arrays below belong to
   bool knows_state = false;
@@ -252,8 +254,9 @@ void report_contacts(Scratch& work);
 void unwhiten(const Whitening& whitening, const double* u, Vector3& linear, Vector3& angular);
 
 /// Rows of an island, from the free velocities in work.u. The first time with the impulses of the step before, later
-/// with those of the row.
-void build_rows(const WorldModel& model, const WorldState& state, Scratch& work, const Island& island, bool is_first);
+/// with those of the row. `pool`: threads to use, or nullptr.
+void build_rows(const WorldModel& model, const WorldState& state, Scratch& work, const Island& island, bool is_first,
+                WorkerPool* pool);
 
 constexpr int kMaxTurningRows = 2;  ///< of a patch
 [[nodiscard]] int count_turning_rows(const ContactLaw& law);

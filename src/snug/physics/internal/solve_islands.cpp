@@ -45,7 +45,7 @@ void read_velocities(Scratch& work, const Island& island) {
 void solve_plain_island(const WorldModel& model, const WorldState& state, Scratch& work, Island& island,
                         IslandWorker& worker) {
   StepReport& report = worker.report;
-  build_rows(model, state, work, island, true);
+  build_rows(model, state, work, island, true, pool_of(worker.newton.group.threads));
   const auto solve = island.has_turning ? solve_with_turning : solve_rows;
   const SolveResult result =
       solve(model.settings, residuals_of(model, work, island), work.rows.begin() + island.first_row,
@@ -97,7 +97,7 @@ void solve_element_island(const WorldModel& model, const WorldInput& input, cons
     if (culprit.is_valid() || agrees || iteration == kElementIterations) break;
     for (const ElementBody& body : worker.element_bodies) linearize_body(model, input, work, body);
     reset_plain_bodies(work, island);
-    build_rows(model, state, work, island, iteration == 0);
+    build_rows(model, state, work, island, iteration == 0, pool_of(worker.newton.group.threads));
     if (first != end) result = solve(model.settings, residuals, first, end, work.u.data(), worker.newton);
     report.sweeps = std::max(report.sweeps, result.iterations);
     for (const ElementBody& body : worker.element_bodies) {
@@ -154,25 +154,42 @@ void solve_island(const WorldModel& model, const WorldInput& input, WorldState& 
   read_velocities(work, island);
 }
 
-/// Those with many rows first, the largest of all at the head, so that threads end at about the same time. Whether it
-/// pays to share them.
-bool order_islands(Scratch& work) {
-  constexpr int kLeastRows = 200;  // beside the largest island, about 50 us of work
-  constexpr int kLarge = 48;       // rows; the order of smaller islands does not matter
+int count_rows(const Scratch& work, int island) {
+  const Island& of = work.islands[static_cast<std::size_t>(island)];
+  return of.end_row - of.first_row;
+}
+
+/// Those with many rows first, the largest of all at the head, so that threads end at about the same time.
+void order_islands(Scratch& work) {
+  constexpr int kLarge = 48;  // rows; the order of smaller islands does not matter
   const auto first = work.island_order.begin(), end = first + work.island_count;
   std::iota(first, end, 0);
-  if (work.pool.size() < 2 || work.island_count < 2) return false;
-  const auto rows_of = [&work](int i) {
-    const Island& island = work.islands[static_cast<std::size_t>(i)];
-    return island.end_row - island.first_row;
-  };
+  if (work.pool.size() < 2 || work.island_count < 2) return;
   auto large_end = first;
   for (auto i = first; i != end; ++i) {
-    if (rows_of(*i) >= kLarge) std::iter_swap(large_end++, i);
+    if (count_rows(work, *i) >= kLarge) std::iter_swap(large_end++, i);
   }
-  if (large_end == first) return static_cast<int>(work.rows.size()) >= kLeastRows;
-  std::sort(first, large_end, [&](int a, int b) { return rows_of(a) != rows_of(b) ? rows_of(a) > rows_of(b) : a < b; });
-  return static_cast<int>(work.rows.size()) - rows_of(*first) >= kLeastRows;
+  std::sort(first, large_end, [&](int a, int b) {
+    return count_rows(work, a) != count_rows(work, b) ? count_rows(work, a) > count_rows(work, b) : a < b;
+  });
+}
+
+/// Whether the largest island is solved by all threads: it has more rows than all others, and enough.
+bool has_all_threads(const Scratch& work) {
+  constexpr int kLeastRows = 400;
+  const int largest = count_rows(work, work.island_order.front());
+  return work.pool.size() > 1 && largest >= kLeastRows && 2 * largest > static_cast<int>(work.rows.size());
+}
+
+/// Whether it pays to share the islands from this one on.
+bool pays_to_share(const Scratch& work, int first) {
+  constexpr int kLeastRows = 200;  // beside the largest of them, about 50 us of work
+  if (work.pool.size() < 2 || work.island_count - first < 2) return false;
+  int rows = 0;
+  for (int i = first + 1; i < work.island_count; ++i) {
+    rows += count_rows(work, work.island_order[static_cast<std::size_t>(i)]);
+  }
+  return rows >= kLeastRows;
 }
 
 void add_report(const StepReport& part, StepReport& report) {
@@ -311,16 +328,22 @@ void solve_islands(const WorldModel& model, const WorldInput& input, WorldState&
   });
   work.rows.resize(static_cast<std::size_t>(work.row_count));
   std::fill_n(work.shift.begin(), 6 * work.active_count, 0.0);
-  const bool is_shared = order_islands(work);
-  for (IslandWorker& worker : work.workers) worker.report = StepReport{};
+  order_islands(work);
+  for (IslandWorker& worker : work.workers) worker.report = StepReport{}, worker.newton.group.threads = nullptr;
   const auto solve = [&](int i, int worker) {
     solve_island(model, input, state, work, work.island_order[static_cast<std::size_t>(i)],
                  work.workers[static_cast<std::size_t>(worker)]);
   };
-  if (is_shared) {
-    work.pool.run(work.island_count, solve);
+  int begin = 0;
+  if (work.island_count > 0 && has_all_threads(work)) {
+    work.workers.front().newton.group.threads = &work.solver_threads;
+    solve(begin++, 0);
+    work.workers.front().newton.group.threads = nullptr;
+  }
+  if (pays_to_share(work, begin)) {
+    work.pool.run(work.island_count - begin, [&](int i, int worker) { solve(begin + i, worker); });
   } else {
-    for (int i = 0; i < work.island_count; ++i) solve(i, 0);
+    for (int i = begin; i < work.island_count; ++i) solve(i, 0);
   }
   for (const IslandWorker& worker : work.workers) add_report(worker.report, report);
 }

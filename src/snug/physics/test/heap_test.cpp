@@ -5,6 +5,7 @@
 #include "second_opinion.hpp"
 #include "snug/core/rng.hpp"
 #include "snug/core/test/peak_memory.hpp"
+#include "snug/physics/internal/contact_newton.hpp"
 
 namespace snug::physics::test {
 namespace {
@@ -60,6 +61,24 @@ TEST(Heap, IsSolvedToTheLawsInLargeGroups) {
   EXPECT_GE(most, 450) << "too few bear on each other for the method of large groups";
 }
 
+TEST(Heap, HasTheSameBytesByTwoThreadsThatSweepItsHalves) {
+  const WorldModel model = heap(9, 6);
+  WorldState one = make_state(model), two = make_state(model);
+  Workspace work_one(model), work_two(model, 2);
+  long most = 0;
+  for (int i = 0; i < 240; ++i) {
+    const StepReport report = step(model, {}, one, work_one);
+    const StepReport same = step(model, {}, two, work_two);
+    ASSERT_EQ(report.status, StepStatus::Converged) << i;
+    ASSERT_EQ(report.residual, same.residual) << i;
+    ASSERT_TRUE(one == two) << i;
+    const auto contacts = work_one.contacts();
+    most = std::max(most, std::count_if(contacts.begin(), contacts.end(),
+                                        [](const auto& contact) { return contact.force_W.norm() > 0.0; }));
+  }
+  EXPECT_GE(most, internal::kSharedGroup) << "too few bear on each other for halves";
+}
+
 /// Bricks in running bond, `courses` of them, each a gap [m] above those that carry it.
 WorldModel wall(int courses, int length, double gap) {
   std::vector<BodyModel> bricks;
@@ -96,6 +115,20 @@ TEST(Heap, TakesLittleMemoryAtTheStart) {
     WorldState state = make_state(model);
     Workspace work(model);
     (void)step(model, {}, state, work);
+  });
+  ASSERT_TRUE(peak);
+  EXPECT_LE(*peak / model.bodies.size(), 20'000U);
+}
+
+TEST(Heap, TakesLittleMemoryWhileItComesToRest) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers keep notes of memory that nobody has touched";
+#endif
+  const WorldModel model = heap(8, 6);
+  const auto peak = snug::test::peak_memory([&] {
+    WorldState state = make_state(model);
+    Workspace work(model);
+    for (int i = 0; i < 150; ++i) (void)step(model, {}, state, work);
   });
   ASSERT_TRUE(peak);
   EXPECT_LE(*peak / model.bodies.size(), 20'000U);

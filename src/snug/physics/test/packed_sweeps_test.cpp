@@ -88,6 +88,24 @@ TEST(PackedSweeps, GiveTheSameBytesByFourAndByEight) {
   }
 }
 
+TEST(PackedSweeps, GiveTheSameBytesInHalvesByOneThreadAndByTwo) {
+  std::vector<Problem> problems;
+  for (const int threads : {1, 2}) {
+    problems.push_back(drawn_problem());
+    Problem& problem = problems.back();
+    WorkerPool pool(threads);
+    PackedSweeps sweeps(kBodies, problem.rows.size());
+    ASSERT_TRUE(sweeps.pack(problem.rows.data(), problem.patches, problem.bodies, true, &pool));
+    const auto u = problem.velocities();
+    EXPECT_LT(sweeps.run(problem.rows.data(), u.data(), {1000, 0.9, 1e-5, 0.0}, threads > 1 ? &pool : nullptr), 1000);
+    EXPECT_LE(problem.residual(), 1e-5);
+  }
+  for (std::size_t i = 0; i < problems[0].rows.size(); ++i) {
+    const double *one = problems[0].rows[i].lambda, *two = problems[1].rows[i].lambda;
+    EXPECT_TRUE(std::equal(one, one + 3, two)) << i;
+  }
+}
+
 TEST(PackedSweeps, RefuseWhatHangsOnOneBody) {
   Problem problem;
   Rng rng = Rng(4).split("star");
