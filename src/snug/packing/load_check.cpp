@@ -28,9 +28,17 @@ double shared_area(const Extent& a, const Extent& b) {
 
 double face_of(const Extent& box) { return (box.high - box.low).head<2>().prod(); }
 
-bool carries(const Extent& lower, const Extent& upper, double slack) {
-  return lower.high.z() < 0.5 * (upper.low.z() + upper.high.z()) && std::abs(upper.low.z() - lower.high.z()) <= slack &&
+/// `sink`: m, that the upper box may have pressed itself in beyond the slack.
+bool carries(const Extent& lower, const Extent& upper, double slack, double sink) {
+  const double gap = upper.low.z() - lower.high.z();
+  return lower.high.z() < 0.5 * (upper.low.z() + upper.high.z()) && gap <= slack && gap >= -slack - sink &&
          shared_area(lower, upper) > 0.0;
+}
+
+/// m, of the edge of a face that bears unevenly.
+double sink_of(const Give& give, double face, double mass) {
+  const double part = give.full_area > 0.0 ? std::clamp(face / give.full_area, 0.01, 1.0) : 1.0;
+  return 2.0 * kGravity * mass * give.per_force / part;
 }
 
 std::vector<Extent> extents_of(const ContainerState& state) {
@@ -39,12 +47,51 @@ std::vector<Extent> extents_of(const ContainerState& state) {
   return extents;
 }
 
-double support_of(const std::vector<Extent>& all, std::size_t own, double slack) {
+/// What rests on each box, and how far each may have sunk.
+struct Bearing {
+  std::vector<double> loads;                 ///< kg
+  std::vector<double> sink_floor, sink_box;  ///< m, beyond the slack
+};
+
+bool is_on_floor(const Extent& box, double slack, double sink) {
+  return box.low.z() <= slack && box.low.z() >= -slack - sink;
+}
+
+/// From the top down: what a box carries is known before it is asked what carries it.
+Bearing bear(const ContainerState& state, const std::vector<Extent>& all, const LoadLimits& limits) {
+  const double slack = limits.support_slack;
+  std::vector<std::size_t> highest_first(all.size());
+  std::iota(highest_first.begin(), highest_first.end(), std::size_t{0});
+  std::ranges::stable_sort(highest_first,
+                           [&](std::size_t a, std::size_t b) { return all[a].low.z() > all[b].low.z(); });
+  Bearing bearing;
+  bearing.loads.assign(all.size(), 0.0);
+  bearing.sink_floor.assign(all.size(), 0.0);
+  bearing.sink_box.assign(all.size(), 0.0);
+  for (const std::size_t upper : highest_first) {
+    const double weight = state.boxes[upper].item.mass + bearing.loads[upper];
+    bearing.sink_floor[upper] = sink_of(limits.on_floor, face_of(all[upper]), weight);
+    const double sink = bearing.sink_box[upper] = sink_of(limits.on_box, face_of(all[upper]), weight);
+    if (is_on_floor(all[upper], slack, bearing.sink_floor[upper])) continue;
+    double area = 0.0;
+    for (const Extent& lower : all)
+      area += carries(lower, all[upper], slack, sink) ? shared_area(lower, all[upper]) : 0.0;
+    if (area <= 0.0) continue;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (i != upper && carries(all[i], all[upper], slack, sink)) {
+        bearing.loads[i] += weight * shared_area(all[i], all[upper]) / area;
+      }
+    }
+  }
+  return bearing;
+}
+
+double support_of(const std::vector<Extent>& all, const Bearing& bearing, std::size_t own, double slack) {
   const Extent& me = all[own];
-  if (std::abs(me.low.z()) <= slack) return 1.0;
+  if (is_on_floor(me, slack, bearing.sink_floor[own])) return 1.0;
   double held = 0.0;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (i != own && carries(all[i], me, slack)) held += shared_area(all[i], me);
+    if (i != own && carries(all[i], me, slack, bearing.sink_box[own])) held += shared_area(all[i], me);
   }
   return std::min(1.0, held / face_of(me));
 }
@@ -94,37 +141,20 @@ std::string describe(const LoadFinding& finding) {
 }
 
 std::vector<double> loads_on(const ContainerState& state, double support_slack) {
-  const std::vector<Extent> all = extents_of(state);
-  std::vector<std::size_t> highest_first(all.size());
-  std::iota(highest_first.begin(), highest_first.end(), std::size_t{0});
-  std::ranges::stable_sort(highest_first,
-                           [&](std::size_t a, std::size_t b) { return all[a].low.z() > all[b].low.z(); });
-  std::vector<double> loads(all.size(), 0.0);
-  for (const std::size_t upper : highest_first) {
-    if (std::abs(all[upper].low.z()) <= support_slack) continue;
-    double area = 0.0;
-    for (const Extent& lower : all)
-      area += carries(lower, all[upper], support_slack) ? shared_area(lower, all[upper]) : 0.0;
-    if (area <= 0.0) continue;
-    const double weight = state.boxes[upper].item.mass + loads[upper];
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      if (i != upper && carries(all[i], all[upper], support_slack)) {
-        loads[i] += weight * shared_area(all[i], all[upper]) / area;
-      }
-    }
-  }
-  return loads;
+  LoadLimits limits;
+  limits.support_slack = support_slack;
+  return bear(state, extents_of(state), limits).loads;
 }
 
 std::vector<LoadFinding> check_finished_load(const ContainerState& state, const LoadLimits& limits,
                                              std::span<const PoseDoubt> doubts) {
   SNUG_CHECK(doubts.empty() || doubts.size() == state.boxes.size(), "a doubt of every box, or none");
   const std::vector<Extent> all = extents_of(state);
-  const std::vector<double> loads = loads_on(state, limits.support_slack);
+  const Bearing bearing = bear(state, all, limits);
   std::vector<LoadFinding> findings;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const PlacedBox& box = state.boxes[i];
-    const double lean = lean_of(box.X_TP.R), support = support_of(all, i, limits.support_slack);
+    const double lean = lean_of(box.X_TP.R), support = support_of(all, bearing, i, limits.support_slack);
     const auto [beyond, above, below] = outside_of(state, box);
     const PoseDoubt doubt = doubts.empty() ? PoseDoubt{} : doubts[i];
     const std::optional<double> most = box.item.no_stack ? std::optional(0.0) : box.item.max_load;
@@ -135,12 +165,12 @@ std::vector<LoadFinding> check_finished_load(const ContainerState& state, const 
       findings.push_back({box.item.id, LoadFault::Outside, beyond, limits.outside});
     } else if (above - doubt.position > limits.above) {
       findings.push_back({box.item.id, LoadFault::Outside, above, limits.above});
-    } else if (below - doubt.position > limits.support_slack) {
-      findings.push_back({box.item.id, LoadFault::Outside, below, limits.support_slack});
+    } else if (below - doubt.position > limits.support_slack + bearing.sink_floor[i]) {
+      findings.push_back({box.item.id, LoadFault::Outside, below, limits.support_slack + bearing.sink_floor[i]});
     } else if (support < limits.min_support) {
       findings.push_back({box.item.id, LoadFault::Unsupported, support, limits.min_support});
-    } else if (loads[i] > allowed + 1e-9) {
-      findings.push_back({box.item.id, LoadFault::Overloaded, loads[i], most.value_or(0.0)});
+    } else if (bearing.loads[i] > allowed + 1e-9) {
+      findings.push_back({box.item.id, LoadFault::Overloaded, bearing.loads[i], most.value_or(0.0)});
     }
   }
   return findings;

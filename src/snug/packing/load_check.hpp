@@ -9,6 +9,14 @@
 
 namespace snug::packing {
 
+/// How far soft surfaces give way: a face of `full_area` or more by `per_force` under each newton, a smaller one by
+/// more in proportion. Both 0: rigid.
+struct Give {
+  double per_force = 0.0;  ///< m/N
+  double full_area = 0.0;  ///< m^2
+  bool operator==(const Give&) const = default;
+};
+
 /// What is asked of every box of a finished load.
 struct LoadLimits {
   double tilt = 0.105;       ///< rad, from standing on a face
@@ -17,6 +25,9 @@ struct LoadLimits {
   double min_support = 0.3;  ///< part of the lower face over something that is near enough
   /// m, between the lower face and what carries it, and under the floor: boxes give way and are seen with errors.
   double support_slack = 0.010;
+  /// Where boxes stand on the floor and on each other. A box may sink by `support_slack` and by twice what its weight,
+  /// with all that it carries, presses its face in: so deep is the edge of a face whose far edge just bears.
+  Give on_floor, on_box;
   double load_slack = 0.02;  ///< part of `max_load` that may be exceeded: masses are known to a few percent
 };
 

@@ -71,6 +71,43 @@ TEST(FinishedLoad, AHeavyStackGivesWayOnTheFloorButDoesNotSinkThroughIt) {
   EXPECT_EQ(check_finished_load(cubes({{0, 0, 0.0395}}), {}).at(0).fault, LoadFault::Outside);
 }
 
+TEST(FinishedLoad, ABoxMaySinkAsFarAsSoftFacesGiveUnderWhatItCarries) {
+  // Three of 6 kg on one another, 1 mm for 15 N: 3.9 mm under one, 11.8 mm under three.
+  ContainerState tower = cubes({{0, 0, 0.0382}, {0, 0, 0.1304}, {0, 0, 0.2265}});
+  for (PlacedBox& box : tower.boxes) box.item.mass = 6.0;
+  LoadLimits limits;
+  EXPECT_EQ(check_finished_load(tower, limits).size(), 1U);
+  limits.on_floor = limits.on_box = {1.0 / 1.5e4, 0.01};
+  EXPECT_TRUE(check_finished_load(tower, limits).empty());
+  // The edge of a face goes twice as deep before the far edge lifts: 23.5 mm and 10 mm of slack.
+  const auto sunk_to = [&](double depth) {
+    ContainerState sunk = tower;
+    for (PlacedBox& box : sunk.boxes) box.X_TP.p.z() += 0.0118 - depth;
+    return check_finished_load(sunk, limits);
+  };
+  EXPECT_TRUE(sunk_to(0.0334).empty());
+  const auto too_deep = sunk_to(0.0337);
+  ASSERT_EQ(too_deep.size(), 1U);
+  EXPECT_EQ(too_deep[0].item, "B0");
+  EXPECT_EQ(too_deep[0].fault, LoadFault::Outside);
+  EXPECT_NEAR(too_deep[0].limit, 0.010 + 2.0 * 18.0 * 9.81 / 1.5e4, 1e-9);
+  // A box alone weighs less and may sink less, and none may hang in the air by more than before.
+  EXPECT_EQ(check_finished_load(cubes({{0, 0, 0.0385}}), limits).at(0).fault, LoadFault::Outside);
+  EXPECT_EQ(check_finished_load(cubes({{0, 0, 0.0605}}), limits).at(0).fault, LoadFault::Unsupported);
+}
+
+TEST(FinishedLoad, ABoxThatIsPressedIntoTheOneBelowIsSupportedByIt) {
+  ContainerState pair = cubes({{0, 0, 0.05}, {0, 0, 0.137}});  // 13 mm into it
+  pair.boxes[1].item.mass = 12.0;
+  LoadLimits limits;
+  EXPECT_EQ(check_finished_load(pair, limits).at(0).fault, LoadFault::Unsupported);
+  limits.on_box = {1.0 / 1.5e4, 0.01};
+  EXPECT_TRUE(check_finished_load(pair, limits).empty());
+  limits.on_box.full_area = 0.02;  // half of the face that is fully stiff: twice as far
+  pair.boxes[1].X_TP.p.z() = 0.112;
+  EXPECT_TRUE(check_finished_load(pair, limits).empty());
+}
+
 TEST(FinishedLoad, FindsWhatSticksOutHangsInTheAirOrCarriesTooMuch) {
   EXPECT_EQ(check_finished_load(cubes({{0.16, 0, 0.05}}), {}).at(0).fault, LoadFault::Outside);
   EXPECT_EQ(check_finished_load(cubes({{0, 0, 0.05}, {0, 0, 0.15}, {0, 0, 0.26}}), {}).at(0).fault, LoadFault::Outside);

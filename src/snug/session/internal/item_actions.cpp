@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -116,6 +117,22 @@ std::vector<packing::PoseDoubt> doubts_of(const Run& run, const packing::Contain
   return doubts;
 }
 
+/// How far boxes of the load give on a surface: the softest of them; rigid where the scenario says nothing of it.
+/// `below` of none: on each other.
+packing::Give give_of(const model::Scenario& scenario, const packing::ContainerState& load,
+                      std::optional<model::MaterialId> below) {
+  packing::Give softest;
+  for (const packing::PlacedBox& box : load.boxes) {
+    const model::Parcel* parcel = model::find_parcel(scenario, box.item.id);
+    if (parcel == nullptr) continue;
+    const auto contact = model::find_contact(scenario, parcel->material, below.value_or(parcel->material));
+    if (!contact || !contact->stiffness) continue;
+    const packing::Give give{1.0 / *contact->stiffness, contact->full_area.value_or(0.0)};
+    if (give.per_force > softest.per_force) softest = give;
+  }
+  return softest;
+}
+
 /// The load as it is seen when the robot stands at its start: what does not lie as a finished load has to is not
 /// packed. `before`: where boxes were believed to be before the robot went there, which takes a second and touches
 /// nothing.
@@ -132,6 +149,9 @@ void check_load(Run& run, const std::vector<std::optional<Pose>>& before) {
   packing::LoadLimits limits;
   limits.tilt = scene.cell.limits.tilt;
   limits.min_support = std::min(limits.min_support, scene.rules().packing.min_support);
+  const model::Scenario& nominal = scene.belief.nominal();
+  limits.on_floor = give_of(nominal, load, model::find_container(nominal, nominal.target)->material);
+  limits.on_box = give_of(nominal, load, std::nullopt);
   std::map<std::string, std::string> reasons;
   for (const packing::LoadFinding& one : packing::check_finished_load(load, limits, doubts_of(run, load))) {
     reasons.emplace(one.item, packing::describe(one));
