@@ -159,7 +159,7 @@ def sequences():
     table = tables(RESULTS, "The five sequences")[0]
     rows = {row[0]: [float(cell) for cell in row[1:]] for row in table[1:]}
     plants = [values for label, values in rows.items() if re.fullmatch(r"plant \d+", label)]
-    kinds = [("mean of the plants", BLUE), ("before the first item was skipped, mean", GREEN), ("the report's robot, programmed by hand", SAND), ("the report's people, by hand", GREY)]
+    kinds = [("mean of the plants", BLUE), ("stopped at the first box that does not fit, mean", GREEN), ("the report's robot, programmed by hand", SAND), ("the report's people, by hand", GREY)]
     title = "Sequences: mean and range of the plants, and the report's robot and people"
     found = []
     for index, name in enumerate(table[0][1:]):
