@@ -96,8 +96,8 @@ constexpr const char* kShakeExamples = R"(Profiles:
   tilt        slowly by the angle whose tangent is --level, to all four sides
   FILE.csv    a head of time_s and any of ax, ay, az (m/s2, of the container along its axes), roll_deg, pitch_deg; then rows
 Every motion begins with the load at rest, once with the scenario's friction and once with each draw of its uncertainty;
-the worst counts. Holds: film is four layers of stretch film (350 N per metre of height): it pulls the outermost corners at
-each height together and resists shear between heights; straps press the boxes that carry no other down with 600 N in total. The container itself is fixed to what carries it.
+the worst counts. Holds: film pulls each box back to where it stood with 2 N per millimetre, at most 150 N; straps press the
+boxes that carry no other down with 600 N in total. The container itself is fixed to what carries it.
 Exit code 0: the load holds; 1: a box shifts, tips or falls; 2: the input cannot be used.
 Examples:
   snug shake scenarios/demo-placements.yaml --scenario scenarios/box-demonstrator.yaml --profile conveyor

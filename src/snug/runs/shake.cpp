@@ -11,16 +11,17 @@
 #include "snug/core/parallel.hpp"
 #include "snug/core/rng.hpp"
 #include "snug/physics/world.hpp"
-#include "snug/runs/internal/film.hpp"
 
 namespace snug::runs {
 namespace {
 
-constexpr double kSettle = 0.5;        ///< s
-constexpr double kStep = 2.0;          ///< times the scenario's, unless it is said
-constexpr double kStrapForce = 600.0;  ///< N, all together
-constexpr double kFallen = 0.10;       ///< m, under the floor, or beyond the walls with the middle
-constexpr double kOnTop = 0.010;       ///< m, between a top and what stands on it
+constexpr double kSettle = 0.5;           ///< s
+constexpr double kStep = 2.0;             ///< times the scenario's, unless it is said
+constexpr double kFilmStiffness = 2.0e3;  ///< N/m, a box
+constexpr double kFilmForce = 150.0;      ///< N, a box
+constexpr double kStrapForce = 600.0;     ///< N, all together
+constexpr double kFallen = 0.10;          ///< m, under the floor, or beyond the walls with the middle
+constexpr double kOnTop = 0.010;          ///< m, between a top and what stands on it
 
 /// The target and the boxes of the load alone: robots, benches and feeders do not travel.
 model::Scenario travelling(model::Scenario scenario, const std::vector<model::PlacementEntry>& load, double friction,
@@ -67,9 +68,7 @@ class Truck {
         work_(world_.model),
         X_WT_(model::find_container(scenario, scenario.target)->X_WT),
         inner_(model::find_container(scenario, scenario.target)->inner_size),
-        state_(cell::make_initial_state(scenario, world_)),
-        film_(boxes_of(scenario, load)),
-        rested_film_(film_) {
+        state_(cell::make_initial_state(scenario, world_)) {
     for (std::size_t i = 0; i < load.size(); ++i) {
       physics::set_present(state_, world_.parcels[i], true);
       physics::set_pose(world_.model, state_, world_.parcels[i], X_WT_ * load[i].X_TP);
@@ -80,35 +79,18 @@ class Truck {
 
   /// The run of what stands by itself; what the motions begin with.
   ShakeRun settle() {
-    refer();
+    reference_ = poses();
     ShakeRun run = drive({"at rest", {{0.0, Vector3::Zero()}, {kSettle, Vector3::Zero()}}});
-    refer();
+    reference_ = poses();
     rested_ = state_;
-    rested_film_ = film_;
     return run;
   }
   ShakeRun shake(const ShakeMotion& motion) {
     state_ = rested_;
-    film_ = rested_film_;
     return drive(motion);
   }
 
  private:
-  static std::vector<internal::FilmBox> boxes_of(const model::Scenario& scenario,
-                                                 const std::vector<model::PlacementEntry>& load) {
-    std::vector<internal::FilmBox> boxes;
-    for (const model::PlacementEntry& one : load) {
-      const model::Parcel& parcel = *model::find_parcel(scenario, one.parcel);
-      boxes.push_back({model::collision_size(scenario, parcel), parcel.inertia.com});
-    }
-    return boxes;
-  }
-
-  void refer() {
-    reference_ = poses();
-    if (options_.hold == LoadHold::Film) film_.wrap(reference_);
-  }
-
   [[nodiscard]] std::vector<Pose> poses() const {
     std::vector<Pose> poses;
     for (const physics::BodyId body : world_.parcels) {
@@ -138,16 +120,19 @@ class Truck {
     const Vector3 gravity_T = X_WT_.R.transpose() * world_.model.gravity;
     const Vector3 felt_T = R_tilt.transpose() * gravity_T - gravity_T - now.acceleration_T;
     const auto tops = static_cast<double>(std::ranges::count(is_top_, true));
-    std::vector<Wrench> film_T(world_.parcels.size());
-    if (options_.hold == LoadHold::Film) film_.pull(poses(), film_T);
     wrenches_.clear();
     for (std::size_t i = 0; i < world_.parcels.size(); ++i) {
       const physics::BodyId body = world_.parcels[i];
       if (!state_.bodies[static_cast<std::size_t>(body.index)].is_present) continue;
       Vector3 force_T = world_.model.bodies[static_cast<std::size_t>(body.index)].inertia.mass * felt_T;
+      if (options_.hold == LoadHold::Film) {
+        Vector3 back = reference_[i].p - (X_WT_.inverse() * physics::pose_of(world_.model, state_, body)).p;
+        back.z() = 0.0;
+        const double pull = std::min(kFilmForce, kFilmStiffness * back.norm());
+        if (back.norm() > 1e-9) force_T += pull * back.normalized();
+      }
       if (options_.hold == LoadHold::Straps && is_top_[i]) force_T.z() -= kStrapForce / tops;
-      force_T += film_T[i].force;
-      wrenches_.push_back({body, {X_WT_.R * force_T, X_WT_.R * film_T[i].torque}});
+      wrenches_.push_back({body, {X_WT_.R * force_T, Vector3::Zero()}});
     }
   }
 
@@ -200,10 +185,7 @@ class Truck {
       run.worst_time = time;
       run.worst_X_TP = poses();
     }
-    for (const std::size_t i : fallen) {
-      physics::set_present(state_, world_.parcels[i], false);
-      film_.leave_out(i);
-    }
+    for (const std::size_t i : fallen) physics::set_present(state_, world_.parcels[i], false);
   }
 
   /// rad, how far the container's vertical moved in the box: turning about it does not count.
@@ -218,7 +200,6 @@ class Truck {
   Pose X_WT_;
   Vector3 inner_;
   physics::WorldState state_, rested_;
-  internal::Film film_, rested_film_;
   std::vector<std::string> ids_;
   std::vector<bool> is_top_;
   std::vector<Pose> reference_;

@@ -15,7 +15,7 @@ namespace snug::runs {
 /// What holds a load beside walls and friction, as simple models.
 enum class LoadHold {
   None,
-  Film,   ///< stretch film, four layers: hoops of 350 N a metre of height at the corners, and shear between them
+  Film,   ///< stretch film: each box is drawn back level to where it stood by 2 N a millimetre, by 150 N at most
   Straps  ///< over the top: the boxes that carry no other are pressed down by 600 N together
 };
 [[nodiscard]] const char* name_of(LoadHold hold);
