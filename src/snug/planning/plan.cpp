@@ -137,8 +137,10 @@ class Planner {
   /// Candidates in the order in which they are tried; the best of them all.
   void rehearse(const std::vector<packing::Candidate>& candidates) {
     const auto start = Clock::now();
-    Rehearsal rehearsal(belief_, scene_.cell, work_.rollouts().take_up(belief_, budget_.threads), budget_.threads,
-                        {plan_.item, standing_.X_WP, standing_.location, X_WE_after_});
+    if (!rehearsal_) {  // once: what a grasp showed is not tried again for places that are found later
+      rehearsal_.emplace(belief_, scene_.cell, work_.rollouts().take_up(belief_, budget_.threads), budget_.threads,
+                         RehearsalTask{plan_.item, standing_.X_WP, standing_.location, X_WE_after_});
+    }
     best_utility_ = least_utility_;
     const int before = plan_.attempts;
     bool has_ended = false, cannot_win = false;
@@ -156,13 +158,13 @@ class Planner {
         note(candidate, cost, Verdict::CannotWin);
         continue;
       }
-      try_insertions(candidate, cost, rehearsal, before);
+      try_insertions(candidate, cost, before);
       has_ended = is_enough(plan_.attempts - before);
     }
     // Nothing is left out while there is room for it: where the best places all failed, those where nothing is beside
     // it.
     for (std::size_t i = 0; i < untried.size() && i < kMostFree && !plan_.best; ++i) {
-      try_insertions(*untried[i], cost_of(scene_, standing_, untried[i]->placement), rehearsal, plan_.attempts);
+      try_insertions(*untried[i], cost_of(scene_, standing_, untried[i]->placement), plan_.attempts);
     }
     if (plan_.best && plan_.best->success_rate < scene_.rules().rehearsal.least_rate) {
       plan_.tried[best_].verdict = Verdict::TooRarely;
@@ -184,13 +186,13 @@ class Planner {
     return insertions;
   }
 
-  void try_insertions(const packing::Candidate& candidate, double cost, Rehearsal& rehearsal, int before) {
+  void try_insertions(const packing::Candidate& candidate, double cost, int before) {
     const settings::InsertionParams& params = scene_.rules().skills.insertion;
     const packing::Candidate placed = skills::measured(scene_.container_state(plan_.item), candidate,
                                                        plan_.standing.size, belief_.nominal().parcel_clearance, params);
-    for (const skills::Insertion& insertion : insertions_for(placed, rehearsal.box())) {
+    for (const skills::Insertion& insertion : insertions_for(placed, rehearsal_->box())) {
       if (is_enough(plan_.attempts - before)) return;
-      Attempt attempt = rehearsal.attempt(placed, insertion, scene_.packed_top(plan_.item));
+      Attempt attempt = rehearsal_->attempt(placed, insertion, scene_.packed_top(plan_.item));
       if (attempt.failure == AttemptFailure::SentBefore) {
         note(placed, cost, Verdict::SentBefore).reason = attempt.text;
         continue;
@@ -248,6 +250,7 @@ class Planner {
   packing::Agent& agent_;
   StandingBox standing_;
   std::optional<Pose> X_WE_after_;
+  std::optional<Rehearsal> rehearsal_;
   double least_utility_ = 0.0, best_utility_ = 0.0;
   std::size_t best_ = 0;  ///< of Plan::tried, where there is a best
   Plan plan_;
