@@ -168,7 +168,7 @@ def sequences():
             of_plants = [values[index] for values in plants]
             marks[0] = (min(of_plants), rows[kinds[0][0]][index], max(of_plants), BLUE)
         found.append((name, marks))
-    return ranges(title, found, [60, 65, 70, 75, 80, 85], "%", [("snug", BLUE), ("snug, stopped at the first misfit", GREEN), ("robot, by hand", SAND), ("people", GREY)], left=90)
+    return ranges(title, found, [60, 65, 70, 75, 80, 85, 90], "%", [("snug", BLUE), ("snug, stopped at the first misfit", GREEN), ("robot, by hand", SAND), ("people", GREY)], left=90)
 
 
 def cycle():
