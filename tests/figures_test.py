@@ -167,7 +167,7 @@ class Made(unittest.TestCase):
         self.assertIn("| people, by hand (the report) | 71.9 % | |", made["sessions"])
         self.assertIn("| snug, plant 1 | 12 / 71.0 |", made["sessions-by-sequence"])
         self.assertIn("| plant 2 | 72.00 | 72.00 | 72.00 | 72.00 | 72.00 | 72.00 |", made["sessions-by-plant"])
-        self.assertIn("30 times the robot recovered. Of those stopped at the first box that does not fit (`--skips 0`), 360 of 360 ended as planned.", made["sessions-by-sequence"])
+        self.assertIn("recoveries: 30. Of those stopped at the first box that does not fit (`--skips 0`), 360 of 360 ended as planned.", made["sessions-by-sequence"])
 
     def test_the_table_of_scenes(self):
         names = ("s1.awake.penetration_mm", "s1.awake.drift_mm", "s2.worst_penetration_mm", "s3.0.error_percent", "s3.22.error_percent", "s3.45.error_percent",

@@ -72,7 +72,7 @@ def sessions(words):
           for who, cells in REPORTED.items()), "",
         f"Standard deviation over the {len(rows)} sessions {statistics.stdev(filled):.1f} points, {statistics.mean(hours):.0f} boxes an hour "
         f"({min(hours):.0f} to {max(hours):.0f}) without the time in which the robot waits for a plan. Of {sent} boxes that were sent {planned} ended as "
-        f"planned, {'none was' if lost == 0 else f'{lost} were'} lost, {sum(row['recoveries'] for row in rows)} times the robot recovered. Of those stopped at the first box that "
+        f"planned, {'none was' if lost == 0 else f'{lost} were'} lost, recoveries: {sum(row['recoveries'] for row in rows)}. Of those stopped at the first box that "
         f"does not fit (`--skips 0`), {sum(row['items_as_planned'] for row in strict_rows)} of {sum(row['items_sent'] for row in strict_rows)} ended as planned.", "", origin(what)]
     by_plant = [
         line("% of the container", [*(f"S{name}" for name in SEQUENCES), "mean"]), "|---" * (len(SEQUENCES) + 2) + "|",

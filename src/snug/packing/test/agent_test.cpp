@@ -310,8 +310,8 @@ TEST(FutureModel, HoldsTheParcelsAskedForAlone) {
   EXPECT_EQ(make_future_model(scenario, scenario.parcels), make_future_model(scenario));
 }
 
-TEST(ContactAware, PressesInAtLastWhatFitsNowhereOtherwise) {
-  // A slot of 100 mm, as high as the container, between boxes that nothing fits on.
+/// A slot of 100 mm, as high as the container, between boxes that nothing fits on.
+ContainerState narrow_slot() {
   ContainerState state = make_container_state(test::demonstrator().containers.front());
   state.inner_size = Vector3(0.3, 0.2, 0.2);
   for (const double side : {-1.0, 1.0}) {
@@ -319,6 +319,11 @@ TEST(ContactAware, PressesInAtLastWhatFitsNowhereOtherwise) {
     wall.X_TP.p = Vector3(0.1 * side, 0.0, 0.1);
     state.boxes.push_back(wall);
   }
+  return state;
+}
+
+TEST(ContactAware, PressesInAtLastWhatFitsNowhereOtherwise) {
+  const ContainerState state = narrow_slot();
   const auto is_placed = [&](double width, double last_interference, bool tries_places = true) {
     AgentInput input;
     input.run.time = 0.01;
@@ -337,6 +342,26 @@ TEST(ContactAware, PressesInAtLastWhatFitsNowhereOtherwise) {
   EXPECT_FALSE(is_placed(0.1 + 2.0 * interference + 0.001, 0.003, false)) << "for who does not try places first";
   EXPECT_TRUE(is_placed(0.1 + 2.0 * 0.003, 0.003));
   EXPECT_FALSE(is_placed(0.1 + 2.0 * 0.003 + 0.001, 0.003));
+}
+
+TEST(ContactAware, PressesInWithHalfOfTheInterferenceFirst) {
+  const ContainerState state = narrow_slot();
+  AgentInput input;
+  input.run.time = 0.01;
+  input.run.tries_places = true;
+  input.settings.last_interference = 0.010;
+  const auto agent = make_agent("contact-aware", std::move(input));
+  // As above, the slot gives twice the interference of one box.
+  const Item fits = make_box("fits", Vector3(0.1, 0.15, 0.19));
+  const Item tight = make_box("tight", Vector3(0.1 + 2.0 * 0.005, 0.15, 0.19));
+  const Item tightest = make_box("tightest", Vector3(0.1 + 2.0 * 0.010, 0.15, 0.19));
+  EXPECT_EQ(agent->decide(state, fits)->pressed, 0.0);
+  EXPECT_EQ(agent->decide(state, tight)->pressed, 0.005);
+  EXPECT_EQ(agent->decide(state, tightest)->pressed, 0.010) << "half is not enough";
+  // Where none of these can be had, the caller asks for more.
+  EXPECT_EQ(agent->decide_pressed(state, fits, {}, 0.0)->pressed, 0.005);
+  EXPECT_EQ(agent->decide_pressed(state, fits, {}, 0.005)->pressed, 0.010);
+  EXPECT_FALSE(agent->decide_pressed(state, fits, {}, 0.010));
 }
 
 TEST(Agent, UnknownNamesAndSettingsThatCannotBeAreRefused) {
