@@ -9,7 +9,7 @@ namespace {
 
 /// Waiting without sleep: to wake a thread takes as long as many a run. Long enough for what is done between the runs
 /// of one step of physics.
-constexpr std::chrono::microseconds kAwake{100};
+constexpr std::chrono::microseconds kAwake{1000};
 
 /// Whether the condition held within kAwake. Gives way to whatever else wants the core.
 template <class Condition>
