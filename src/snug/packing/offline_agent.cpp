@@ -11,7 +11,8 @@ namespace {
 
 class OfflineAgent : public Agent {
  public:
-  explicit OfflineAgent(AgentInput input) : input_(std::move(input)) {}
+  /// Plans without interference: a box gives way only while it is held, so a whole plan that counts on it jams.
+  explicit OfflineAgent(AgentInput input) : input_(std::move(input)) { input_.settings.planned_interference = 0.0; }
   std::string_view name() const override { return name_of(AgentKind::Offline); }
 
   Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item) override {
