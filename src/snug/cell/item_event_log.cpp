@@ -75,6 +75,11 @@ void ItemEventLog::box_appeared(int item, double time) {
   log(time, "appear", item, "stands at the aligner");
 }
 
+void ItemEventLog::box_was_placed(int item) {
+  Item& one = items_[static_cast<std::size_t>(item)];
+  one.has_appeared = one.was_held = one.over_container = true;
+}
+
 void ItemEventLog::box_removed(int item, double time) {
   items_[static_cast<std::size_t>(item)].was_removed = true;
   log(time, "removed", item, "taken away from the aligner to make room for the next box");

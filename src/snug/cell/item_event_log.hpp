@@ -56,6 +56,8 @@ class ItemEventLog {
   ItemEventLog(const model::Scenario& scenario, const model::Sequence& sequence);
 
   void box_appeared(int item, double time);
+  /// It was placed before the log began.
+  void box_was_placed(int item);
   void box_removed(int item, double time);
   /// A body left the cell; one of the boxes or another.
   void body_lost(record::Event event);

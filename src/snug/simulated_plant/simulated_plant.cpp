@@ -48,6 +48,7 @@ void SimulatedPlant::take_up(const TakenUp& begin) {
     was_brought_[static_cast<std::size_t>(item)] = true;
   }
   state_ = simulation_.take_up(anchor);
+  for (const cell::CellAnchor::Box& box : anchor.boxes) state_.event_log.box_was_placed(box.item);
   state_.world.step_index = std::llround(begin.time / simulation_.world().model.settings.dt);
   brought_count_ = begin.brought;
 }
