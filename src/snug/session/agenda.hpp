@@ -44,6 +44,8 @@ struct ItemTask {
   OperatorOrder asked_by;                          ///< its order
   std::vector<packing::Placement> refused_places;  ///< by the operator
   bool is_held = false;                            ///< by the operator
+  std::optional<planning::Room> room;              ///< a move of another box, after which this one has a place
+  bool has_made_room = false;                      ///< such a move was begun
   RecoveryTask recovery;
   ItemEnd end = ItemEnd::NoPlace;
   std::string reason;

@@ -26,6 +26,16 @@ bool stands_as(const plant::Feedback& robot, const planning::RobotState& expecte
                             [](double is, double was) { return std::abs(is - was) <= kSameAngle; });
 }
 
+/// Wall clock.
+double seconds_of(const Decided& decided) {
+  return decided.plan.decision_seconds + decided.plan.rehearsal_seconds + decided.room_seconds;
+}
+
+/// Where the belief was saved.
+void add_hash(Decided& decided) {
+  if (!decided.belief_file.empty()) decided.hash = fmt::format("{:016x}", planning::hash(decided.plan));
+}
+
 }  // namespace
 
 Decisions::Decisions(planning::Budget budget, packing::Ask ask, std::optional<std::filesystem::path> save_to)
@@ -43,18 +53,38 @@ void Decisions::prepare(const planning::BeliefSnapshot& belief) {
   if (belief.chosen.empty()) (void)work_.agent_for(belief, model::ItemIndex(0), budget_);
 }
 
-Decided Decisions::make(const planning::BeliefSnapshot& belief, model::ItemIndex item, std::string file) {
+Decided Decisions::make(const planning::BeliefSnapshot& belief, model::ItemIndex item, std::string file,
+                        bool may_make_room) {
   Decided decided{planning::plan(belief, item, budget_, work_), 0.0, std::move(file), {}};
-  if (!decided.belief_file.empty()) decided.hash = fmt::format("{:016x}", planning::hash(decided.plan));
+  add_hash(decided);
+  const bool leaves_places = belief.chosen.empty() && !belief.agent.is_asked;  // to the agent, which decides here
+  if (may_make_room && leaves_places && decided.plan.outcome == planning::PlanOutcome::NoPlace) {
+    const auto start = std::chrono::steady_clock::now();
+    decided.room = planning::make_room(belief, item, budget_, work_);
+    decided.room_seconds = seconds_since(start);
+  }
   return decided;
 }
 
-Decided Decisions::decide(const planning::BeliefSnapshot& belief, model::ItemIndex item) {
+Decided Decisions::decide(const planning::BeliefSnapshot& belief, model::ItemIndex item, bool may_make_room) {
   SNUG_CHECK(!deciding_.valid(), "one plan at a time");
   std::string file = save(belief, item);
   const auto start = std::chrono::steady_clock::now();
-  Decided decided = make(belief, item, std::move(file));
+  Decided decided = make(belief, item, std::move(file), may_make_room);
   decided.waited = seconds_since(start);
+  return decided;
+}
+
+Decided Decisions::decide_at(planning::BeliefSnapshot belief, model::ItemIndex item, const packing::Placement& place) {
+  belief.chosen.assign(belief.items.size(), std::nullopt);
+  belief.chosen[item.slot()] = place;
+  return decide(belief, item, false);
+}
+
+Decided Decisions::decided_move(planning::Room room) {
+  const model::ItemIndex item = room.plan.item;
+  Decided decided{std::move(room.plan), 0.0, save(room.asked, item), {}};
+  add_hash(decided);
   return decided;
 }
 
@@ -69,7 +99,7 @@ void Decisions::decide_ahead(planning::BeliefSnapshot belief, double time) {
   expected_ = belief.robot;
   since_ = time;
   deciding_ = std::async(std::launch::async, [this, item, belief = std::move(belief), file = std::move(file)] {
-    return make(belief, item, file);
+    return make(belief, item, file, true);
   });
 }
 
@@ -79,7 +109,7 @@ std::optional<Decided> Decisions::end_ahead(const plant::Feedback& robot) {
   if (!has_completed) ahead_->is_seen = false;
   if (!deciding_.valid()) return std::nullopt;
   Decided decided = deciding_.get();
-  const double planning = decided.plan.decision_seconds + decided.plan.rehearsal_seconds;
+  const double planning = seconds_of(decided);
   decided.waited = std::max(0.0, planning - (robot.time - since_));
   if (!has_completed || !stands_as(robot, expected_)) return decided;
   ahead_->decided = std::move(decided);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "snug/planning/plan.hpp"
+#include "snug/planning/room.hpp"
 #include "snug/plant/plant.hpp"
 
 namespace snug::session {
@@ -16,6 +17,8 @@ struct Decided {
   double waited = 0.0;      ///< s of wall clock that the robot stood for it
   std::string belief_file;  ///< where the belief was saved; empty: it was not
   std::string hash;         ///< planning::hash of the plan, where the belief was saved: `snug plan` comes to the same
+  std::optional<planning::Room> room = {};  ///< for an item without a place
+  double room_seconds = 0.0;                ///< wall clock of the search for it
 };
 
 /// The next item, that was brought while the tool left the one before.
@@ -32,7 +35,13 @@ class Decisions {
 
   /// Throws InputError for an agent that is not known.
   void prepare(const planning::BeliefSnapshot& belief);
-  [[nodiscard]] Decided decide(const planning::BeliefSnapshot& belief, model::ItemIndex item);
+  /// `may_make_room`: where the item has no place another box may move.
+  [[nodiscard]] Decided decide(const planning::BeliefSnapshot& belief, model::ItemIndex item, bool may_make_room);
+  /// At this place, and nowhere else.
+  [[nodiscard]] Decided decide_at(planning::BeliefSnapshot belief, model::ItemIndex item,
+                                  const packing::Placement& place);
+  /// The move as a decision of its own.
+  [[nodiscard]] Decided decided_move(planning::Room room);
   [[nodiscard]] double gain_elsewhere(const planning::BeliefSnapshot& belief, model::ItemIndex item);
 
   /// The item was brought ahead.
@@ -48,7 +57,8 @@ class Decisions {
   [[nodiscard]] std::optional<AheadItem> take_ahead(model::ItemIndex item);
 
  private:
-  [[nodiscard]] Decided make(const planning::BeliefSnapshot& belief, model::ItemIndex item, std::string file);
+  [[nodiscard]] Decided make(const planning::BeliefSnapshot& belief, model::ItemIndex item, std::string file,
+                             bool may_make_room);
   [[nodiscard]] std::string save(const planning::BeliefSnapshot& belief, model::ItemIndex item);
 
   planning::Budget budget_;

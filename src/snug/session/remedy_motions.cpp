@@ -171,9 +171,17 @@ std::vector<std::vector<motion::Waypoint>> plan_put_aside(const Scene& scene, co
   return ways;
 }
 
+bool is_aligner_free(const Scene& scene, model::ItemIndex item) {
+  for (std::size_t i = 0; i < scene.belief.boxes.size(); ++i) {
+    const model::ItemIndex other(i);
+    if (other != item && scene.box(other) && scene.locate(other) == planning::Location::Aligner) return false;
+  }
+  return true;
+}
+
 bool can_return(const Scene& scene, model::ItemIndex item) {
   if (!scene.box(item) || scene.is_under_obstacle(item) || scene.is_under_box(item)) return false;
-  if (scene.locate(item) == planning::Location::Aligner) return false;
+  if (scene.locate(item) == planning::Location::Aligner || !is_aligner_free(scene, item)) return false;
   const planning::ToolReach& reaches = scene.cell.reaches;
   return !reaches ||
          std::ranges::all_of(plan_pick_to_return(scene, item, rotation_at_aligner(scene, item)), [&](const auto& one) {

@@ -38,7 +38,10 @@ struct Carried {
 [[nodiscard]] std::vector<std::vector<motion::Waypoint>> plan_put_aside(const planning::Scene& scene,
                                                                         const plant::Feedback& robot,
                                                                         model::ItemIndex item, const Pose& X_PS);
-/// It lies where it can be picked for that, elsewhere than at the aligner, and nothing stands on it.
+/// No box but this one stands at the aligner.
+[[nodiscard]] bool is_aligner_free(const planning::Scene& scene, model::ItemIndex item);
+/// The aligner is free, and it lies where it can be picked for that, elsewhere than at the aligner, and nothing stands
+/// on it.
 [[nodiscard]] bool can_return(const planning::Scene& scene, model::ItemIndex item);
 /// The tool to its start.
 [[nodiscard]] std::vector<motion::Waypoint> plan_home(const planning::Scene& scene, const plant::Feedback& robot);

@@ -86,6 +86,7 @@ struct ItemReport {
   double position_error = 0.0;        ///< m, level, as it was seen
   double angle_error = 0.0;           ///< rad
   std::vector<Send> sends;
+  std::optional<packing::Placement> made_room;  ///< of a box that was packed before: moved there, so that this one fits
   std::vector<Recovery> recoveries;
   std::vector<OperatorStep> operator_steps;
   double decision_seconds = 0.0;  ///< wall clock, of the agent alone

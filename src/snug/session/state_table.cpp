@@ -25,12 +25,14 @@ constexpr std::array kTransitions{
     Transition{State::Plan, Signal::Planned, State::Send},
     Transition{State::Plan, Signal::ToBeConfirmed, State::AskOperator},
     Transition{State::Plan, Signal::Gone, State::FinishItem},
-    Transition{State::Plan, Signal::NoPlace, State::PutBack},
+    Transition{State::Plan, Signal::NoPlace, State::MakeRoom},
     Transition{State::Plan, Signal::Stopped, State::FinishItem},
     Transition{State::AskOperator, Signal::GoOn, State::Send},
     Transition{State::AskOperator, Signal::AnotherPlace, State::Plan},
     Transition{State::AskOperator, Signal::Skip, State::PutBack},
     Transition{State::AskOperator, Signal::Stopped, State::FinishItem},
+    Transition{State::MakeRoom, Signal::Started, State::Plan},
+    Transition{State::MakeRoom, Signal::NoPlace, State::PutBack},
     Transition{State::PutBack, Signal::Finished, State::FinishItem},
     Transition{State::Send, Signal::Started, State::Moving},
     Transition{State::Moving, Signal::ToolLeaves, State::LookAhead},
@@ -69,6 +71,7 @@ constexpr std::array kTransitions{
     Transition{State::FinishItem, Signal::Finished, State::NextItem},
     Transition{State::FinishItem, Signal::NextOnAgenda, State::ResumeItem},
     Transition{State::ResumeItem, Signal::Finished, State::Assess},
+    Transition{State::ResumeItem, Signal::ToBePlannedAnew, State::Plan},
     Transition{State::GoHome, Signal::Finished, State::Done},
 };
 
@@ -103,6 +106,8 @@ const char* name_of(State state) {
       return "plan";
     case State::AskOperator:
       return "ask operator";
+    case State::MakeRoom:
+      return "make room";
     case State::PutBack:
       return "put back";
     case State::Send:

@@ -18,6 +18,7 @@ enum class State {
   TakeOut,          ///< a packed box is put to the aligner, as the operator says
   Plan,             ///< decides where it goes and by which motion, or takes a plan that was made ahead
   AskOperator,      ///< does who operates want something else than what is planned?
+  MakeRoom,         ///< it has no place: another box is to stand elsewhere, so that it gets one
   PutBack,          ///< it has no place: it goes back to the aligner from where it was moved to
   Send,             ///< starts the motion, or its next stage
   Moving,           ///< reads the plant's events

@@ -77,7 +77,12 @@ class Scorer {
   }
 
   [[nodiscard]] bool is_in(std::size_t i, const Pose& X_WP) const {
-    return cell::fit_in(container_.inner_size, witness_.size_of(i), container_.X_WT.inverse() * X_WP).is_in;
+    return cell::fit_in(container_.inner_size, witness_.size_of(i), in_container(X_WP)).is_in;
+  }
+
+  [[nodiscard]] Pose in_container(const Pose& X_WP) const { return container_.X_WT.inverse() * X_WP; }
+  [[nodiscard]] double off_place(const Pose& X_TP, const packing::Placement& planned) const {
+    return (X_TP.p - planned.X_TP.p).head<2>().norm();
   }
 
   void judge(const session::ItemReport& report, const TruePoses& now, TrueItem& item) const {
@@ -86,13 +91,16 @@ class Scorer {
     for (std::size_t i = 0; i < now.size(); ++i) {
       if (i == own || !before_[i] || !is_in(i, *before_[i])) continue;
       others_stay = others_stay && now[i] && is_in(i, *now[i]);
-      if (now[i]) item.displacement = std::max(item.displacement, (now[i]->p - before_[i]->p).norm());
+      if (now[i] && report.made_room && report.made_room->item == witness_.items[i])
+        item.displacement = std::max(item.displacement, off_place(in_container(*now[i]), *report.made_room));
+      else if (now[i])
+        item.displacement = std::max(item.displacement, (now[i]->p - before_[i]->p).norm());
     }
     if (!now[own]) return;
-    const Pose X_TP = container_.X_WT.inverse() * *now[own];
-    const Pose& planned = report.sends.back().planned.X_TP;
-    item.position_error = (X_TP.p - planned.p).head<2>().norm();
-    item.angle_error = angle_between(X_TP.R, planned.R);
+    const Pose X_TP = in_container(*now[own]);
+    const packing::Placement& planned = report.sends.back().planned;
+    item.position_error = off_place(X_TP, planned);
+    item.angle_error = angle_between(X_TP.R, planned.X_TP.R);
     item.is_as_planned = is_in(own, *now[own]) && item.position_error <= limits_.position &&
                          item.angle_error <= limits_.tilt && others_stay && item.displacement <= limits_.displacement;
   }

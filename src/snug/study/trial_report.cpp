@@ -129,6 +129,7 @@ Json as_json(const session::ItemReport& item, const study::TrueItem& truth) {
     json["joint_acceleration_share"] = motion.joint_acceleration;
     json["sends"] = sends_as_json(item, truth);
   }
+  if (item.made_room) json["made_room"] = as_json(*item.made_room);
   if (!item.sends.empty() || !item.recoveries.empty()) json["recoveries"] = recoveries_as_json(item.recoveries);
   if (!item.operator_steps.empty()) json["operator"] = steps_as_json(item.operator_steps);
   json["seconds"] = as_json(item.seconds);
@@ -262,6 +263,11 @@ std::string format_item(const session::ItemReport& item, const study::TrueItem& 
         item.seconds.travel, item.seconds.carry, item.seconds.regrasp, item.seconds.insert, item.seconds.push,
         item.seconds.wait,
         item.end == session::ItemEnd::Placed ? std::string() : fmt::format("  {}", session::name_of(item.end)));
+  }
+  if (item.made_room) {
+    const Vector3 p = 1e3 * item.made_room->X_TP.p;
+    text += fmt::format("         {} was moved to ({:.1f}, {:.1f}, {:.1f}) mm to make room for it\n",
+                        item.made_room->item, p.x(), p.y(), p.z());
   }
   for (const session::OperatorStep& one : item.operator_steps) {
     text += fmt::format("         at {:.1f} s operator: {}\n", one.time, describe(one));

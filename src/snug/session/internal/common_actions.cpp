@@ -175,6 +175,8 @@ Signal act(State state, Run& run) {
       return take_out(run);
     case State::AskOperator:
       return ask_operator(run);
+    case State::MakeRoom:
+      return make_room(run);
     case State::PutBack:
       return put_back(run);
     case State::Send:

@@ -52,6 +52,12 @@ void begin_item(Run& run, model::ItemIndex item, std::optional<model::ItemIndex>
   run.log(event::ItemStarted{task.begun, item, because_of});
 }
 
+/// For an item that is at the aligner for the first time, once.
+bool may_make_room(const Run& run) {
+  const ItemTask& task = run.agenda.top();
+  return run.agenda.under_way.size() == 1 && task.sends == 0 && !task.has_made_room;
+}
+
 /// The plan that was made ahead, or one that is made now.
 Decided decide(Run& run) {
   ItemTask& task = run.agenda.top();
@@ -60,11 +66,8 @@ Decided decide(Run& run) {
   const plant::Feedback& robot = run.executor.robot();
   belief.robot = {robot.X_WE, robot.q, robot.io};
   belief.next = run.agenda.follower_of(task.item);
-  if (!task.asked_place) return run.decisions.decide(belief, task.item);
-  planning::BeliefSnapshot asked = belief;
-  asked.chosen.assign(asked.items.size(), std::nullopt);
-  asked.chosen[task.item.slot()] = task.asked_place;
-  return run.decisions.decide(asked, task.item);
+  if (task.asked_place) return run.decisions.decide_at(belief, task.item, *task.asked_place);
+  return run.decisions.decide(belief, task.item, may_make_room(run));
 }
 
 /// What was packed before, and is seen outside or nowhere now, is not packed any more.
@@ -284,7 +287,17 @@ Signal plan_item(Run& run) {
   }
   const bool is_infeasible = decided.plan.outcome == planning::PlanOutcome::Infeasible;
   task.end = is_infeasible ? ItemEnd::Infeasible : ItemEnd::NoPlace;
+  task.room = std::move(decided.room);
   return Signal::NoPlace;
+}
+
+Signal make_room(Run& run) {
+  std::optional<planning::Room> room = std::exchange(run.agenda.top().room, std::nullopt);
+  if (!room) return Signal::NoPlace;
+  run.agenda.top().has_made_room = true;
+  begin_item(run, room->plan.item, run.agenda.top().item);
+  run.agenda.top().ready = run.decisions.decided_move(std::move(*room));
+  return Signal::Started;
 }
 
 Signal put_back(Run& run) {
@@ -339,6 +352,7 @@ Signal resume_item(Run& run) {
   } else if (box && own.sends > 0) {
     run.log(event::Repacked{own.item, own.plan->best->planned, run.cell.layout.X_WT.inverse() * box->X_WP});
   }
+  if (!task.plan) return Signal::ToBePlannedAnew;  // it was to make room
   const bool has_moved = run.executor.time() > own.begun;
   if (recovery.ends_unless_moved && !has_moved) {
     recovery.repacked = run.belief.now().scenario.recovery.most_tries;

@@ -61,8 +61,8 @@ Situation situation_of(Run& run) {
     at.lies_on_others = was_lifted(scene, culprit, task.before);
   }
   at.stops = recovery.stops;
-  at.can_return =
-      recovery.returns < kMostReturns && !run.decisions.has_ahead() && (at.is_held || can_return(scene, culprit));
+  at.can_return = recovery.returns < kMostReturns && !run.decisions.has_ahead() && is_aligner_free(scene, culprit) &&
+                  (at.is_held || can_return(scene, culprit));
   at.was_pressed = recovery.was_pressed || (is_there && scene.is_under_obstacle(culprit));
   return at;
 }

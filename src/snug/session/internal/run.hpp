@@ -35,6 +35,7 @@ struct Run {
 [[nodiscard]] Signal perceive_item(Run& run);
 [[nodiscard]] Signal check_item(Run& run);
 [[nodiscard]] Signal plan_item(Run& run);
+[[nodiscard]] Signal make_room(Run& run);
 [[nodiscard]] Signal put_back(Run& run);
 [[nodiscard]] Signal finish_item(Run& run);
 [[nodiscard]] Signal resume_item(Run& run);

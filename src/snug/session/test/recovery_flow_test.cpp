@@ -417,6 +417,46 @@ TEST(RecoveryFlow, TheTimeForABoxThatIsPackedAnewCountsForTheItemThatMovedIt) {
   EXPECT_GE(result.items[1].seconds.total(), 2.0) << "s: two motions";
 }
 
+/// Two boxes fit one behind the other. When the second comes, the first is found in the middle.
+TEST(RecoveryFlow, APackedBoxMovesWhereAnItemHasNoPlaceOtherwise) {
+  const auto edit = [](model::Scenario& scenario) {
+    std::ranges::find(scenario.containers, scenario.target, &model::Container::name)->inner_size =
+        Vector3(0.185, 0.490, 0.120);
+    scenario.recovery.skips = 0;
+  };
+  const auto pack_with = [&](const std::string& agent) {
+    ScriptedPlant plant;
+    SessionOptions options = quick_options();
+    options.agent = agent;
+    options.decision.time = 0.02;
+    options.log = [&](const SessionEvent& one) {
+      const auto* brought = std::get_if<event::ItemBrought>(&one);
+      if (brought == nullptr || brought->item != model::ItemIndex(1)) return;
+      plant.visible["BOX027"] = container_pose();
+      plant.visible["BOX027"].p.z() += 0.047;
+    };
+    plant.happens = [&](int) { plant.visible.clear(); };
+    return pack_items(plant, 2, edit, options);
+  };
+  const SessionResult moved = pack_with("contact-aware");
+  ASSERT_EQ(moved.items.size(), 2U);
+  EXPECT_EQ(moved.stop_reason, StopReason::AllPacked);
+  for (const ItemReport& item : moved.items) {
+    EXPECT_EQ(item.end, ItemEnd::Placed) << item.id << ": " << item.reason;
+    EXPECT_EQ(item.sends.size(), 1U) << "the other box's motion is not its own";
+    EXPECT_NEAR(item.seconds.total(), item.done - item.begin, 1e-9);
+  }
+  EXPECT_EQ(recovery_count(moved), 0);
+  EXPECT_FALSE(moved.items[0].made_room);
+  ASSERT_TRUE(moved.items[1].made_room);
+  EXPECT_EQ(moved.items[1].made_room->item, "BOX027");
+  EXPECT_EQ(moved.items[0].planned, *moved.items[1].made_room);
+  EXPECT_EQ(moved.plan.size(), 2U);
+  const SessionResult stays = pack_with("margin");
+  ASSERT_EQ(stays.items.size(), 2U);
+  EXPECT_FALSE(stays.items[1].is_packed()) << "it does not look ahead";
+}
+
 // What holds of every session, whatever happens in its plant.
 
 /// Ends and sights at random: boxes lie in the container, on the bench, on the ground, lean, or are not seen.
