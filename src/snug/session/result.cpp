@@ -1,6 +1,8 @@
 // SessionResult: words for how items and sessions end.
 #include "snug/session/result.hpp"
 
+#include <fmt/format.h>
+
 namespace snug::session {
 
 const char* name_of(ItemEnd end) {
@@ -38,6 +40,11 @@ const char* name_of(ItemEnd end) {
 std::string describe(const ItemReport& item) {
   const std::string end = name_of(item.end);
   return item.reason.empty() || item.reason == end ? end : end + ": " + item.reason;
+}
+
+std::string describe_room(const ItemReport& item) {
+  const Vector3 p = 1e3 * item.made_room->X_TP.p;
+  return fmt::format("{} moved to ({:.0f}, {:.0f}, {:.0f}) mm to make room", item.made_room->item, p.x(), p.y(), p.z());
 }
 
 std::string describe(const OperatorStep& step) {

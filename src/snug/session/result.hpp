@@ -99,6 +99,8 @@ struct ItemReport {
 
 /// How it ended and why: "no place: no space left".
 [[nodiscard]] std::string describe(const ItemReport& item);
+/// "BOX016 moved to (-44, -186, 100) mm to make room", of an item that another box made room for.
+[[nodiscard]] std::string describe_room(const ItemReport& item);
 
 enum class StopReason {
   AllPacked,

@@ -237,6 +237,7 @@ std::vector<record::Event> events_of(const session::SessionResult& result) {
     if (item.sends.empty() && !item.is_packed()) {
       events.push_back({item.done, "refused", item.id, session::describe(item), {}});
     }
+    if (item.made_room) events.push_back({item.begin, "room", item.id, session::describe_room(item), {}});
     for (const session::Send& send : item.sends) {
       const Vector3 p = 1e3 * send.planned.X_TP.p;
       events.push_back({send.time,

@@ -264,11 +264,7 @@ std::string format_item(const session::ItemReport& item, const study::TrueItem& 
         item.seconds.wait,
         item.end == session::ItemEnd::Placed ? std::string() : fmt::format("  {}", session::name_of(item.end)));
   }
-  if (item.made_room) {
-    const Vector3 p = 1e3 * item.made_room->X_TP.p;
-    text += fmt::format("         {} was moved to ({:.1f}, {:.1f}, {:.1f}) mm to make room for it\n",
-                        item.made_room->item, p.x(), p.y(), p.z());
-  }
+  if (item.made_room) text += "         " + session::describe_room(item) + "\n";
   for (const session::OperatorStep& one : item.operator_steps) {
     text += fmt::format("         at {:.1f} s operator: {}\n", one.time, describe(one));
   }
