@@ -127,7 +127,7 @@ BeliefSnapshot after(BeliefSnapshot belief, const Attempt& attempt) {
   for (std::size_t w = 0; w < belief.worlds.size(); ++w) {
     for (std::size_t i = 0; i < belief.boxes.size(); ++i) {
       const std::optional<Pose>& end = attempt.ends[w][i];
-      if (!end) continue;
+      if (!end || !belief.boxes[i]) continue;
       belief.worlds[w].X_WP[i] = end;
       if (w == 0) belief.boxes[i]->X_WP = *end;
     }

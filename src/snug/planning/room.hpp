@@ -7,16 +7,17 @@
 
 namespace snug::planning {
 
-/// A packed box moves.
+/// A packed box moves, and nothing else yet.
 struct Room {
   BeliefSnapshot asked;  ///< the belief with the box's place chosen: plan() of it is `plan`
   Plan plan;             ///< of the box
 };
 
 /// The move of one box after which the item has a place. It is rehearsed, and so is the item's own motion after it, in
-/// the worlds that the move leaves. A box that moves stays on the face that it stands on, and nothing stands on it. Of
-/// all moves the one after which most filling is expected in the end, and more than `recovery.gain_elsewhere` more than
-/// without the item; none: there is no such move.
+/// the worlds that the move leaves. A box that moves stays on the face that it stands on, and nothing stands on it.
+/// Moves are tried by the filling that is expected after them in the end, which has to be larger than without the item
+/// by more than `recovery.gain_elsewhere`; one after which the item is pressed in counts less. None: no move succeeds,
+/// or the agent does not look ahead. Throws InputError as PlanningWorkspace does.
 [[nodiscard]] std::optional<Room> make_room(const BeliefSnapshot& belief, model::ItemIndex item, const Budget& budget,
                                             PlanningWorkspace& work);
 
