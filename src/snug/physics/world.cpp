@@ -141,6 +141,7 @@ internal::Scratch::Scratch(const WorldModel& model, int threads) : pool(threads)
   patches = BoundedVector<Patch>(std::min(model.pair_capacity, contact_capacity));
   patch_order.resize(patches.capacity());
   shared_supports = SharedSupports(n, patches.capacity(), contact_capacity);
+  lost_impulses.all = BoundedVector<LostImpulse>(contact_capacity);
   const bool resists =
       std::any_of(model.laws.begin(), model.laws.end(), [](const auto& l) { return l.resists_turning(); });
   const std::size_t row_capacity = contact_capacity + (resists ? kMaxTurningRows * patches.capacity() : 0);

@@ -217,7 +217,7 @@ void visit_pairs(const WorldModel& model, const WorldInput& input, WorldState& s
       if (work.is_moving[a] == 0 && work.is_moving[b] == 0) continue;
       const PairBodies bodies = bodies_of(model, pair);
       if (ignores_held(bodies, input) || (is_same(memory, work) && stays_clear(memory, reach))) continue;
-      refresh_manifold(bodies, state, work, reach, margin, is_face(model, bodies), pair);
+      refresh_manifold(bodies, state, reach, margin, is_face(model, bodies), static_cast<std::uint32_t>(i), work, pair);
       work.visits[i] = find_contacts(bodies, reach, model.settings.dt, work, pair, found.data());
     }
   });
@@ -253,7 +253,7 @@ bool visit_pair(const WorldModel& model, const WorldInput& input, WorldState& st
     work.pair_memories[index] = {bodies.a, bodies.b, -1, -1.0, 0};
     return false;
   }
-  refresh_manifold(bodies, state, work, reach, margin, is_face(model, bodies), pair);
+  refresh_manifold(bodies, state, reach, margin, is_face(model, bodies), index, work, pair);
   return add_contacts(model, bodies, index, reach, pair, work);
 }
 
@@ -323,6 +323,7 @@ void detect_contacts(const WorldModel& model, const WorldInput& input, WorldStat
   work.patches.clear();
   work.contacts.clear();
   work.has_too_many_contacts = false;
+  work.lost_impulses.all.clear();
   std::fill_n(work.pair_done.begin(), state.pairs.size(), char{0});
   visit_pairs(model, input, state, work, reach, margin);
   while (walk_pairs(model, input, state, work, reach, margin)) {  // waking a group brings its pairs in

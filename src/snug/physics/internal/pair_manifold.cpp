@@ -50,8 +50,8 @@ void turn(const Matrix3& R, const Impulse& from, Impulse& to) {
 }
 
 /// Impulses of the old manifold, turned into the axes of the new one, for the new points: same feature first, else the
-/// nearest old point.
-void hand_on_impulses(const PairState& old, const Matrix3& R_new_old, PairState& pair) {
+/// nearest old point. Returns which old points were handed on, a bit each.
+std::uint32_t hand_on_impulses(const PairState& old, const Matrix3& R_new_old, PairState& pair) {
   const int old_count = old.count;
   std::uint32_t used = 0;
   for (int i = 0; i < pair.count; ++i) {
@@ -80,6 +80,7 @@ void hand_on_impulses(const PairState& old, const Matrix3& R_new_old, PairState&
     turn(R_new_old, old.impulses[static_cast<std::size_t>(best)], pair.impulses[static_cast<std::size_t>(i)]);
     used |= 1U << best;
   }
+  return used;
 }
 
 /// Columns n, t1, t2 of a pair, in A.
@@ -106,13 +107,13 @@ void keep_load(const PairState& old, const geometry::Manifold& manifold, PairSta
   for (std::size_t i = 0; i < count; ++i) pair.impulses[i][0] = loads[i].load;
 }
 
-void find_manifold(const PairBodies& bodies, const BodyWork& a, const BodyWork& b, double margin, bool is_face,
-                   const RelativePose& now, PairState& pair) {
+/// Returns which points of the old manifold were handed on, a bit each.
+std::uint32_t find_manifold(const PairBodies& bodies, const BodyWork& a, const BodyWork& b, double margin, bool is_face,
+                            const RelativePose& now, const PairState& old, PairState& pair) {
   const Pose X_WA{a.R_WB, a.p_WB}, X_WB{b.R_WB, b.p_WB};
   geometry::Manifold manifold;
   geometry::collide(bodies.geom_a.shape, X_WA * bodies.geom_a.X_BG, bodies.geom_b.shape, X_WB * bodies.geom_b.X_BG,
                     margin, pair.cache, manifold);
-  const PairState old = pair;
   pair.is_known = true;
   pair.p_AB = now.p;
   pair.quat_AB = now.quat;
@@ -129,22 +130,43 @@ void find_manifold(const PairBodies& bodies, const BodyWork& a, const BodyWork& 
     point.feature = found.feature;
     pair.impulses[static_cast<std::size_t>(i)] = {};
   }
-  if (old.count == 0 || pair.count == 0) return;
+  if (old.count == 0 || pair.count == 0) return 0;
   const Matrix3 R_new_old = axes_of(pair).transpose() * axes_of(old);
-  hand_on_impulses(old, R_new_old, pair);
+  const std::uint32_t handed_on = hand_on_impulses(old, R_new_old, pair);
   if (is_face) keep_load(old, manifold, pair);
   pair.turning.moment = R_new_old * old.turning.moment;
+  return handed_on;
+}
+
+/// What is left of the old points: another support of the body may have the corner that bore there.
+void keep_lost(const PairState& old, std::uint32_t handed_on, const PairBodies& bodies, std::uint32_t index,
+               Scratch& work) {
+  const bool is_b = work.bodies[static_cast<std::size_t>(bodies.b)].active >= 0;
+  const Matrix3 axes_W = work.bodies[static_cast<std::size_t>(bodies.a)].R_WB * axes_of(old) * (is_b ? 1.0 : -1.0);
+  for (int i = 0; i < old.count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if ((handed_on >> i & 1U) != 0 || !(old.impulses[k][0] > 0.0)) continue;
+    const std::lock_guard lock(work.lost_impulses.mutex);
+    if (work.lost_impulses.all.full()) return;
+    work.lost_impulses.all.push_back({index, i, is_b ? bodies.b : bodies.a,
+                                      is_b ? old.points[k].p_B : old.points[k].p_A, axes_W.col(0),
+                                      axes_W * Eigen::Map<const Vector3>(old.impulses[k].data())});
+  }
 }
 
 }  // namespace
 
-void refresh_manifold(const PairBodies& bodies, const WorldState& state, const Scratch& work, double reach,
-                      double margin, bool is_face, PairState& pair) {
+void refresh_manifold(const PairBodies& bodies, const WorldState& state, double reach, double margin, bool is_face,
+                      std::uint32_t index, Scratch& work, PairState& pair) {
   const BodyWork& a = work.bodies[static_cast<std::size_t>(bodies.a)];
   const BodyWork& b = work.bodies[static_cast<std::size_t>(bodies.b)];
   const RelativePose now = relative_pose(a, state.bodies[static_cast<std::size_t>(bodies.a)], b,
                                          state.bodies[static_cast<std::size_t>(bodies.b)]);
-  if (!has_kept(pair, now, reach)) find_manifold(bodies, a, b, margin, is_face, now, pair);
+  if (has_kept(pair, now, reach)) return;
+  const PairState old = pair;
+  const std::uint32_t handed_on = find_manifold(bodies, a, b, margin, is_face, now, old, pair);
+  const bool is_on_fixed = (a.active >= 0) != (b.active >= 0);
+  if (is_on_fixed && !is_face) keep_lost(old, handed_on, bodies, index, work);
 }
 
 }  // namespace snug::physics::internal

@@ -18,8 +18,8 @@ inline PairBodies bodies_of(const WorldModel& model, const PairState& pair) {
           model.bodies[static_cast<std::size_t>(b.body)].geoms[static_cast<std::size_t>(b.geom)]};
 }
 
-/// A manifold that holds for the present poses.
-void refresh_manifold(const PairBodies& bodies, const WorldState& state, const Scratch& work, double reach,
-                      double margin, bool is_face, PairState& pair);
+/// A manifold that holds for the present poses. What a body loses that lies on fixed ones: Scratch::lost_impulses.
+void refresh_manifold(const PairBodies& bodies, const WorldState& state, double reach, double margin, bool is_face,
+                      std::uint32_t index, Scratch& work, PairState& pair);
 
 }  // namespace snug::physics::internal

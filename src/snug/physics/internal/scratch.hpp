@@ -83,6 +83,7 @@ struct Patch {
   int row_count = 0;  ///< contacts, and what resists turning
   int first_row = 0;
   int island = 0;
+  int plane = -1;                ///< in SharedSupports::orders, of the first patch of a plane
   double reach_from = 0.0;       ///< m, has the same contacts for any reach from here
   double reach_to = 0.0;         ///< m, to below here
   bool is_kept = false;          ///< the same as in the last step, at the same place
@@ -196,6 +197,7 @@ struct Scratch {
   bool has_too_many_contacts = false;
   bool has_belts = false;  ///< the model: surfaces that run
   SharedSupports shared_supports;
+  LostImpulses lost_impulses;
 
   std::vector<std::uint64_t> keys, old_keys, new_keys;  ///< of pairs: all, those before, those of boxes that moved
   std::vector<int> pair_origin;                         ///< of each key: its place among the old ones
@@ -225,6 +227,9 @@ void bear_on_faces(const WorldModel& model, WorldState& state, Scratch& work);
 /// are not covered. False: more of these than a face has.
 bool bear_on_plane(const WorldModel& model, std::span<const int> patches, std::span<const int> contacts,
                    WorldState& state, Scratch& work);
+/// Puts the rows of a face on several supports of one plane into the order in which one slab has them, or back into
+/// their own. What sweeps leave open depends on it.
+void arrange_planes(const Island& island, bool is_as_one_slab, Scratch& work);
 /// Marks a sleeping group as moving, from within a step.
 void wake_group(const WorldModel& model, WorldState& state, Scratch& work, int group);
 /// Velocities at the end of the step without contacts (bodies with force elements: done in solve_islands).

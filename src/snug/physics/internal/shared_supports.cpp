@@ -139,6 +139,26 @@ Matrix3 axes_of(const Patch& patch, bool is_b) {
   return is_b ? axes : Matrix3(-axes);
 }
 
+/// The nearest point that bears, if any does.
+const SupportPoint* find_nearest_bearing(const std::vector<SupportPoint>& points, const SupportPoint& from,
+                                         const Scratch& work) {
+  const SupportPoint* nearest = nullptr;
+  for (const SupportPoint& to : points) {
+    if (work.contacts[static_cast<std::size_t>(to.contact)].is_covered) continue;
+    if (nearest == nullptr || distance(from, to) < distance(from, *nearest)) nearest = &to;
+  }
+  return nearest;
+}
+
+/// An impulse on the moving body, W, is added to what the contact starts from.
+void add_impulse(const Vector3& impulse, const SupportPoint& to, WorldState& state, Scratch& work) {
+  const Contact& contact = work.contacts[static_cast<std::size_t>(to.contact)];
+  Patch& patch = work.patches[static_cast<std::size_t>(contact.patch)];
+  Eigen::Map<Vector3> taken(state.pairs[patch.pair].impulses[static_cast<std::size_t>(contact.point)].data());
+  taken += axes_of(patch, view_of(work, patch).is_b).transpose() * impulse;
+  patch.is_kept = false;  // its rows begin from the state
+}
+
 /// A covered contact that bore in the step before, as a corner that has slid to the next support, gives its impulse to
 /// the nearest that bears: the search for the impulses starts where it ended.
 void hand_on_impulses(const std::vector<SupportPoint>& points, WorldState& state, Scratch& work) {
@@ -148,19 +168,11 @@ void hand_on_impulses(const std::vector<SupportPoint>& points, WorldState& state
     Patch& patch = work.patches[static_cast<std::size_t>(covered.patch)];
     auto& impulse = state.pairs[patch.pair].impulses[static_cast<std::size_t>(covered.point)];
     if (impulse[0] == 0.0) continue;
-    const SupportPoint* nearest = nullptr;
-    for (const SupportPoint& to : points) {
-      if (work.contacts[static_cast<std::size_t>(to.contact)].is_covered) continue;
-      if (nearest == nullptr || distance(from, to) < distance(from, *nearest)) nearest = &to;
-    }
-    const Contact& bearing = work.contacts[static_cast<std::size_t>(nearest->contact)];
-    Patch& other = work.patches[static_cast<std::size_t>(bearing.patch)];
     Eigen::Map<Vector3> given(impulse.data());
-    Eigen::Map<Vector3> taken(state.pairs[other.pair].impulses[static_cast<std::size_t>(bearing.point)].data());
-    taken +=
-        axes_of(other, view_of(work, other).is_b).transpose() * (axes_of(patch, view_of(work, patch).is_b) * given);
+    const Vector3 on_moving = axes_of(patch, view_of(work, patch).is_b) * given;
+    add_impulse(on_moving, *find_nearest_bearing(points, from, work), state, work);
     given.setZero();
-    patch.is_kept = other.is_kept = false;  // their rows begin from the state
+    patch.is_kept = false;
   }
 }
 
@@ -188,6 +200,29 @@ void add_points(const WorldState& state, const Scratch& work, const Patch& patch
     const Vector3& p = is_b ? point.p_B : point.p_A;
     points.push_back({axes.ex.dot(p), axes.ey.dot(p), axes.n.dot(p), i, rank});
   }
+}
+
+/// The same for what a corner bore on a support that it has left in this step. `only`: the pair of the last support,
+/// which keeps what it lost itself to itself, or -1.
+void hand_on_lost(const std::vector<SupportPoint>& points, const View& view, const PlaneAxes& axes, std::int64_t only,
+                  WorldState& state, Scratch& work) {
+  constexpr double kSamePlane = 1e-5;  // m
+  for (const LostImpulse& lost : work.lost_impulses.all) {
+    if (lost.moving != view.moving || lost.pair == only || 1.0 - view.n_W.dot(lost.n_W) > 4.0 * kLeans) continue;
+    const SupportPoint from{axes.ex.dot(lost.p), axes.ey.dot(lost.p), axes.n.dot(lost.p), -1, -1};
+    if (std::abs(from.height - points.front().height) > kSamePlane) continue;
+    add_impulse(lost.impulse, *find_nearest_bearing(points, from, work), state, work);
+  }
+}
+
+/// A body that has come to lie on one support alone.
+void take_lost(const Patch& patch, SharedSupports& shared, WorldState& state, Scratch& work) {
+  if (work.lost_impulses.all.empty()) return;
+  const View view = view_of(work, patch);
+  const PlaneAxes axes = axes_of_plane(work, view);
+  shared.points.clear();
+  add_points(state, work, patch, axes, 0, shared.points);
+  hand_on_lost(shared.points, view, axes, patch.pair, state, work);
 }
 
 /// The order of supports in space, which does not depend on the order of the file.
@@ -265,16 +300,64 @@ void align_axes(const SharedSupports& shared, const Vector3& n_W, Scratch& work)
   }
 }
 
+/// Geom of the moving body.
+std::uint32_t moving_geom(const WorldState& state, const Scratch& work, const Patch& patch) {
+  const PairState& pair = state.pairs[patch.pair];
+  return view_of(work, patch).is_b ? pair.geom_b : pair.geom_a;
+}
+
+/// What bears, counter-clockwise about its mean in the axes of the geom, as the corners of a box on one slab lie.
+void order_corners(const WorldModel& model, const WorldState& state, SharedSupports& shared, Scratch& work) {
+  Patch& first = work.patches[static_cast<std::size_t>(*std::min_element(shared.plane.begin(), shared.plane.end()))];
+  const std::uint32_t geom = moving_geom(state, work, first);
+  for (const int index : shared.plane) {
+    const Patch& patch = work.patches[static_cast<std::size_t>(index)];
+    if (moving_geom(state, work, patch) != geom) return;
+  }
+  const WorldModel::GeomRef& ref = model.geoms[geom];
+  const Matrix3& R_BG =
+      model.bodies[static_cast<std::size_t>(ref.body)].geoms[static_cast<std::size_t>(ref.geom)].X_BG.R;
+  const View view = view_of(work, first);
+  const Matrix3 R_WG = work.bodies[static_cast<std::size_t>(view.moving)].R_WB * R_BG;
+  int axis = 0;
+  for (int i = 1; i < 3; ++i)
+    if (std::abs(R_WG.col(i).dot(view.n_W)) > std::abs(R_WG.col(axis).dot(view.n_W))) axis = i;
+  const Vector3 ex = R_WG.col((axis + 1) % 3), ey = R_WG.col((axis + 2) % 3);
+  const std::size_t begin = shared.order.size();
+  Vector3 mean = Vector3::Zero();
+  for (const SupportPoint& point : shared.points) {
+    const Contact& contact = work.contacts[static_cast<std::size_t>(point.contact)];
+    if (contact.is_covered) continue;
+    shared.order.push_back(point.contact);
+    mean += contact.p_WQ;
+  }
+  mean /= static_cast<double>(shared.order.size() - begin);
+  const auto from = shared.order.begin() + static_cast<std::ptrdiff_t>(begin);
+  std::sort(from, shared.order.end());
+  shared.ascending.insert(shared.ascending.end(), from, shared.order.end());
+  const auto angle_of = [&](int contact) {
+    const Vector3 p = work.contacts[static_cast<std::size_t>(contact)].p_WQ - mean;
+    return std::atan2(ey.dot(p), ex.dot(p));
+  };
+  std::sort(from, shared.order.end(), [&](int p, int q) {
+    const double angle_p = angle_of(p), angle_q = angle_of(q);
+    return angle_p != angle_q ? angle_p < angle_q : p < q;
+  });
+  first.plane = static_cast<int>(shared.orders.size());
+  shared.orders.push_back({begin, shared.order.size()});
+}
+
 /// The supports of one body that lie in the plane of the first of the chain, taken off the chain.
 void share_plane(const WorldModel& model, WorldState& state, Scratch& work, int& chain) {
   SharedSupports& shared = work.shared_supports;
   shared.points.clear();
   shared.plane.clear();
+  const Patch& first = work.patches[static_cast<std::size_t>(chain)];
   if (shared.next[static_cast<std::size_t>(chain)] < 0) {  // the only support
+    take_lost(first, shared, state, work);
     chain = -1;
     return;
   }
-  const Patch& first = work.patches[static_cast<std::size_t>(chain)];
   const Vector3 n_W = support_normal(model, state, work, first);
   const double height = height_of(state, work, first, n_W);
   int* link = &chain;
@@ -290,7 +373,7 @@ void share_plane(const WorldModel& model, WorldState& state, Scratch& work, int&
     *link = shared.next[static_cast<std::size_t>(index)];
     shared.plane.push_back(index);
   }
-  if (shared.plane.size() < 2) return;
+  if (shared.plane.size() < 2) return take_lost(first, shared, state, work);
   const auto fixed_of = [&](int index) { return view_of(work, work.patches[static_cast<std::size_t>(index)]).fixed; };
   std::sort(shared.plane.begin(), shared.plane.end(), [&](int p, int q) {
     if (comes_before(work, fixed_of(p), fixed_of(q))) return true;
@@ -318,9 +401,33 @@ void share_plane(const WorldModel& model, WorldState& state, Scratch& work, int&
     if (bear_on_plane(model, shared.plane, shared.contacts, state, work)) return;
   }
   hand_on_impulses(shared.points, state, work);
+  hand_on_lost(shared.points, view_of(work, first), axes, -1, state, work);
+  order_corners(model, state, shared, work);
 }
 
 }  // namespace
+
+void arrange_planes(const Island& island, bool is_as_one_slab, Scratch& work) {
+  const SharedSupports& shared = work.shared_supports;
+  if (shared.orders.empty()) return;
+  const auto row_of = [&work](int contact) -> Row& {
+    const Patch& patch = work.patches[static_cast<std::size_t>(work.contacts[static_cast<std::size_t>(contact)].patch)];
+    return *(work.rows.begin() + patch.first_row + (contact - patch.first_contact));
+  };
+  for (int i = island.first_patch; i < island.end_patch; ++i) {
+    const int plane = work.patches[static_cast<std::size_t>(work.patch_order[static_cast<std::size_t>(i)])].plane;
+    if (plane < 0) continue;
+    const PlaneOrder& of = shared.orders[static_cast<std::size_t>(plane)];
+    const std::vector<int>& wanted = is_as_one_slab ? shared.order : shared.ascending;
+    for (std::size_t k = of.first; k < of.end; ++k) {
+      Row& place = row_of(shared.ascending[k]);
+      for (std::size_t other = k; place.contact != wanted[k] && other < of.end; ++other) {
+        Row& row = row_of(shared.ascending[other]);
+        if (row.contact == wanted[k]) std::swap(place, row);
+      }
+    }
+  }
+}
 
 SharedSupports::SharedSupports(std::size_t bodies, std::size_t patches, std::size_t contact_count)
     : first(bodies, -1), next(patches, -1) {
@@ -328,15 +435,26 @@ SharedSupports::SharedSupports(std::size_t bodies, std::size_t patches, std::siz
   points.reserve(contact_count);
   loads.reserve(contact_count);
   contacts.reserve(contact_count);
+  orders.reserve(patches);
+  order.reserve(contact_count);
+  ascending.reserve(contact_count);
   touched.reserve(bodies);
 }
 
 void mark_covered_contacts(const WorldModel& model, WorldState& state, Scratch& work) {
   SharedSupports& shared = work.shared_supports;
   shared.touched.clear();
+  shared.orders.clear();
+  shared.order.clear();
+  shared.ascending.clear();
+  auto& lost = work.lost_impulses.all;
+  std::sort(lost.begin(), lost.end(), [](const LostImpulse& p, const LostImpulse& q) {  // whichever thread was first
+    return std::pair(p.pair, p.point) < std::pair(q.pair, q.point);
+  });
   for (std::size_t i = 0; i < work.patches.size(); ++i) {
     Patch& patch = work.patches[i];
     patch.is_shared = false;
+    patch.plane = -1;
     if (!may_share(model, work, patch)) continue;
     for (int k = patch.first_contact; k < patch.first_contact + patch.contact_count; ++k)
       work.contacts[static_cast<std::size_t>(k)].is_covered = false;

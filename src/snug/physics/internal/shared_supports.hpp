@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <mutex>
 #include <vector>
 
+#include "snug/core/bounded_vector.hpp"
 #include "snug/physics/internal/face_loads.hpp"
 
 namespace snug::physics::internal {
@@ -13,6 +16,28 @@ struct SupportPoint {
   double x = 0.0, y = 0.0, height = 0.0;  ///< m, along the plane of the supports and from it
   int contact = 0;                        ///< in Scratch::contacts
   int rank = 0;                           ///< of its support, by its place in the world
+};
+
+/// What a point of a pair bore in the step before, where the pair has no such point now: a corner has slid to the next
+/// support.
+struct LostImpulse {
+  std::uint32_t pair = 0;
+  int point = 0;    ///< of the manifold before
+  int moving = 0;   ///< body
+  Vector3 p;        ///< on it, in its frame
+  Vector3 n_W;      ///< from the support to it
+  Vector3 impulse;  ///< N s, on it, W
+};
+
+/// Of one step. Threads that look at pairs add to it.
+struct LostImpulses {
+  std::mutex mutex;
+  BoundedVector<LostImpulse> all;
+};
+
+/// Contacts of one plane that bear: [first, end) in SharedSupports::order and ::ascending.
+struct PlaneOrder {
+  std::size_t first = 0, end = 0;
 };
 
 /// Scratch of mark_covered_contacts().
@@ -25,8 +50,11 @@ struct SharedSupports {
   std::vector<int> touched;  ///< that have such patches
   std::vector<int> plane;    ///< patches of one plane
   std::vector<SupportPoint> points;
-  std::vector<FaceLoad> loads;  ///< of each point, where faces bear on surfaces that run
-  std::vector<int> contacts;    ///< of the plane
+  std::vector<FaceLoad> loads;     ///< of each point, where faces bear on surfaces that run
+  std::vector<int> contacts;       ///< of the plane
+  std::vector<PlaneOrder> orders;  ///< of all planes whose corners bear; Patch::plane is an index
+  std::vector<int> order;          ///< contacts, in the order in which one slab has them
+  std::vector<int> ascending;      ///< the same, in their own order
 };
 
 }  // namespace snug::physics::internal

@@ -46,6 +46,7 @@ void solve_plain_island(const WorldModel& model, const WorldState& state, Scratc
                         IslandWorker& worker) {
   StepReport& report = worker.report;
   build_rows(model, state, work, island, true, pool_of(worker.newton.group.threads));
+  arrange_planes(island, true, work);
   const auto solve = island.has_turning ? solve_with_turning : solve_rows;
   const SolveResult result =
       solve(model.settings, residuals_of(model, work, island), work.rows.begin() + island.first_row,
@@ -97,7 +98,9 @@ void solve_element_island(const WorldModel& model, const WorldInput& input, cons
     if (culprit.is_valid() || agrees || iteration == kElementIterations) break;
     for (const ElementBody& body : worker.element_bodies) linearize_body(model, input, work, body);
     reset_plain_bodies(work, island);
+    if (iteration > 0) arrange_planes(island, false, work);
     build_rows(model, state, work, island, iteration == 0, pool_of(worker.newton.group.threads));
+    arrange_planes(island, true, work);
     if (first != end) result = solve(model.settings, residuals, first, end, work.u.data(), worker.newton);
     report.sweeps = std::max(report.sweeps, result.iterations);
     for (const ElementBody& body : worker.element_bodies) {
@@ -151,6 +154,7 @@ void solve_island(const WorldModel& model, const WorldInput& input, WorldState& 
   worker.report.is_infeasible |= island.is_infeasible;
   worker.positions.run(model.settings, first, end, work.contacts.begin(), work.u.data(), island.is_infeasible,
                        work.shift.data());
+  arrange_planes(island, false, work);
   read_velocities(work, island);
 }
 

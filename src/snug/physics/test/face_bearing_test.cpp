@@ -356,7 +356,7 @@ TEST(FaceBearing, APushDoesNotDependOnTheOrderOfTheFile) {
 TEST(FaceBearing, APushDoesNotDependOnHowTheFloorIsCut) {
   Rng rng = Rng(3).split("floors");
   const Push pushes[] = {{0.03, 0.15, {0.3, 0.2, 0.1}}, {0.06, 0.15, {0.3, 0.2, 0.1}}, {0.08, 0.25, {0.3, 0.2, 0.02}}};
-  for (const Bearing bearing : {Bearing::Edges, Bearing::Face}) {
+  for (const Bearing bearing : {Bearing::Corners, Bearing::Edges, Bearing::Face}) {
     for (const Push& push : pushes) {
       const BodyState slab = pushed(cut_floor(0, rng), push, bearing);
       for (const int cuts : {3, 12, 30}) {
@@ -364,6 +364,34 @@ TEST(FaceBearing, APushDoesNotDependOnHowTheFloorIsCut) {
                                         << cuts << " cuts");
         expect_alike(pushed(cut_floor(cuts, rng), push, bearing), slab);
       }
+    }
+  }
+}
+
+/// Where a box comes to rest that slides and turns.
+BodyState slid(const Ground& ground, const Vector3& velocity, double angular) {
+  WorldModel model = world(bearing_on(Bearing::Corners, 0.3), bearing_on(Bearing::Corners, 0.3));
+  model.bodies = ground.supports;
+  model.bodies.push_back(box({0.3, 0.2, 0.1}, 1.0, {0.0, 0.0, 0.05}));
+  model.finalize();
+  Simulation run(model);
+  const int last = static_cast<int>(model.bodies.size()) - 1;
+  run.body(last).velocity = velocity;
+  run.body(last).angular_velocity = Vector3(0.0, 0.0, angular);
+  run.steps(1000);
+  return run.body(last);
+}
+
+TEST(FaceBearing, ASlideOnCornersDoesNotDependOnHowTheFloorIsCut) {
+  Rng rng = Rng(4).split("floors");
+  const Ground slab = cut_floor(0, rng);
+  for (const int cuts : {1, 4, 12, 30, 60}) {
+    SCOPED_TRACE(cuts);
+    const Ground floor = cut_floor(cuts, rng);
+    for (const double angular : {3.0, -6.0}) {
+      const BodyState on_slab = slid(slab, {0.9, 0.2, 0.0}, angular), on_floor = slid(floor, {0.9, 0.2, 0.0}, angular);
+      EXPECT_LT((on_floor.p_WBcm - on_slab.p_WBcm).norm(), 1e-4);
+      EXPECT_NEAR(yaw_of(on_floor), yaw_of(on_slab), 0.02 * kDegree);
     }
   }
 }

@@ -72,10 +72,8 @@ TEST(SharedSupport, ABoxSpunOnTilesTurnsAsOnOneSlab) {
   EXPECT_GT(slab, 20.0 * kPi / 180.0);
   for (const int n : {2, 3, 4, 12}) {
     SCOPED_TRACE(n);
-    // Tiles of 50 mm: a corner that passes to the next tile is for a step or two no point of either.
-    const double allowed = (n < 12 ? 0.5 : 1.0) * kPi / 180.0;
-    EXPECT_NEAR(spun_on(n, false), slab, allowed);
-    EXPECT_NEAR(spun_on(n, true), slab, allowed);
+    EXPECT_NEAR(spun_on(n, false), slab, 0.1 * kPi / 180.0);
+    EXPECT_NEAR(spun_on(n, true), slab, 0.1 * kPi / 180.0);
   }
 }
 
