@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "snug/physics/internal/contact_path.hpp"
+#include "snug/physics/internal/located_impact.hpp"
 #include "snug/physics/internal/scratch.hpp"
 
 namespace snug::physics::internal {
@@ -48,9 +49,13 @@ void solve_plain_island(const WorldModel& model, const WorldState& state, Scratc
   build_rows(model, state, work, island, true, pool_of(worker.newton.group.threads));
   arrange_planes(island, true, work);
   const auto solve = island.has_turning ? solve_with_turning : solve_rows;
-  const SolveResult result =
-      solve(model.settings, residuals_of(model, work, island), work.rows.begin() + island.first_row,
-            work.rows.begin() + island.end_row, work.u.data(), worker.newton);
+  const Residuals residuals = residuals_of(model, work, island);
+  const int lone = find_lone_body(model, state, work, island);
+  SolveResult result;
+  if (lone < 0 || !solve_located_impact(model, state, work, island, lone, residuals, worker.newton, result))
+    result = solve(model.settings, residuals, work.rows.begin() + island.first_row, work.rows.begin() + island.end_row,
+                   work.u.data(), worker.newton);
+  if (lone >= 0) hold_pivots(model, island, lone, work);
   report.sweeps = std::max(report.sweeps, result.iterations);
   report.residual = std::max(report.residual, result.residual);
   if (!result.has_converged) report.status = StepStatus::NotConverged;

@@ -28,6 +28,7 @@ TEST_P(Jam, IsSolvedToTheLawsWhereTwoHundredSweepsFail) {
     // The tolerance of the solver; the problem is rebuilt from other formulas, whose rounding at 1e-9 m/s is far below.
     ASSERT_LE(problem.violation(impulses, motion), 1.01 * model.settings.tolerance);
     for (std::size_t b = 5; b < 12; ++b) {  // the forces reported are those that moved the bodies
+      if (problem.is_located(b)) continue;
       ASSERT_LE((motion[b].v - run.state.bodies[b].velocity).norm(), 1e-9);
       ASSERT_LE((motion[b].w - run.state.bodies[b].angular_velocity).norm(), 1e-8);
     }

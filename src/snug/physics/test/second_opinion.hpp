@@ -23,7 +23,12 @@ class StepProblem {
       body.w_free += dt_ * body.inverse_inertia * wrench.wrench_W.torque;
     }
     for (const ContactReport& contact : contacts) add_contact(contact);
+    find_located();
   }
+
+  /// A body that touches fixed things alone, bears on one point and strikes with another: it is solved in order of time
+  /// (decision 0133), which is not the problem of one step. Its contacts are left out.
+  [[nodiscard]] bool is_located(std::size_t body) const { return bodies_[body].is_located; }
 
   struct Motion {
     Vector3 v = Vector3::Zero(), w = Vector3::Zero();
@@ -48,6 +53,7 @@ class StepProblem {
     double worst = 0.0;
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       const Contact& c = contacts_[i];
+      if (at(c.report.a).is_located || at(c.report.b).is_located) continue;
       const Vector3& n = c.report.n_AB_W;
       const Vector3 xi = relative_velocity(c, motion);
       const double lambda_n = n.dot(impulses[i]), xi_n = n.dot(xi);
@@ -79,10 +85,12 @@ class StepProblem {
     Matrix3 inverse_inertia = Matrix3::Zero();  ///< W, at the middle of the step
     Vector3 p_WBcm, v_start = Vector3::Zero(), w_start = Vector3::Zero(), v_free = Vector3::Zero(),
                     w_free = Vector3::Zero();
+    bool is_located = false;
   };
   struct Contact {
     ContactReport report;
     double friction = 0.0, target = 0.0, w_nn = 0.0, w_tt = 0.0;
+    double approach = 0.0;  ///< m/s, at the start
   };
 
   Body& at(BodyId id) { return bodies_[static_cast<std::size_t>(id.index)]; }
@@ -117,7 +125,7 @@ class StepProblem {
   }
 
   void add_contact(const ContactReport& report) {
-    Contact c{report, 0.0, 0.0, 0.0, 0.0};
+    Contact c{report, 0.0, 0.0, 0.0, 0.0, 0.0};
     const auto material = [this](BodyId id) {
       return model_.bodies[static_cast<std::size_t>(id.index)].geoms[0].material;
     };
@@ -139,9 +147,26 @@ class StepProblem {
       free.push_back({body.v_free, body.w_free});
     }
     const double xi_start = n.dot(relative_velocity(c, start)), xi_free = n.dot(relative_velocity(c, free));
+    c.approach = xi_start;
     const bool closes = report.phi + 0.5 * dt_ * (xi_start + xi_free) <= 0.0;
     c.target = closes ? 0.0 : std::min(0.0, -2.0 * report.phi / dt_ - xi_start);
     contacts_.push_back(c);
+  }
+
+  void find_located() {
+    const double fall = dt_ * model_.gravity.norm();
+    std::vector<bool> meets(bodies_.size()), bears(bodies_.size()), strikes(bodies_.size());
+    for (const Contact& c : contacts_) {
+      const bool are_both = at(c.report.a).inverse_mass > 0.0 && at(c.report.b).inverse_mass > 0.0;
+      for (const BodyId id : {c.report.a, c.report.b}) {
+        const auto i = static_cast<std::size_t>(id.index);
+        if (are_both) meets[i] = true;
+        if (std::abs(c.approach) <= 2.0 * fall && c.report.phi <= dt_ * fall) bears[i] = true;
+        if (c.approach < -2.0 * fall) strikes[i] = true;
+      }
+    }
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+      bodies_[i].is_located = bodies_[i].inverse_mass > 0.0 && !meets[i] && bears[i] && strikes[i];
   }
 
   [[nodiscard]] Vector3 relative_velocity(const Contact& c, const std::vector<Motion>& motion) const {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "scene.hpp"
 
@@ -115,6 +116,77 @@ TEST(SecondOrder, ABoxLeavesATurntableWhereFrictionIsTooLittle) {
   // 3 rad/s at 0.5 m ask for 4.5 m/s^2: friction of 0.4587.
   EXPECT_LE(creep_on_turntable(3.0, 0.5, 0.47, 2.0, {0.02, 0.02, 0.01}), 1e-3);
   EXPECT_GE(creep_on_turntable(3.0, 0.5, 0.45, 2.0, {0.02, 0.02, 0.01}), 0.1);
+}
+
+struct Rocked {
+  std::vector<double> speeds;    ///< of each impact: the fraction of the angular speed at the flat pose that is left
+  std::vector<double> energies;  ///< the same by the energy 30 ms after it and after the one before
+};
+
+/// A block that rocks on a plane without slipping, from rest at a tilt, for four impacts.
+Rocked rock(const Vector3& size, double tilt, double dt) {
+  BodyModel block = box(size, 1.0, Vector3::Zero());
+  block.X_WB.R = exp_rotation(Vector3(0.0, tilt, 0.0));
+  const Vector3 corner = block.X_WB.R * Vector3(std::copysign(0.5 * size.x(), tilt), 0.0, -0.5 * size.z());
+  block.X_WB.p = Vector3(0.0, 0.0, -corner.z());
+  const WorldModel model = ground_with(1.0, dt, block);
+  Simulation run(model);
+  const double about_edge = (size.x() * size.x() + size.z() * size.z()) / 3.0;  // inertia
+  const auto speed_at_flat = [&](double angle) {
+    const double risen = 0.5 * size.z() * (std::cos(angle) - 1.0) + 0.5 * size.x() * std::sin(std::abs(angle));
+    const double speed = run.body(1).angular_velocity.y();
+    return std::sqrt(speed * speed + 2.0 * 9.81 * risen / about_edge);
+  };
+  const double flat =
+      9.81 * 0.5 * size.z() + energy_of(run) - kinetic_energy(model, run.state) - 9.81 * run.body(1).p_WBcm.z();
+  double energy = energy_of(run) - flat, angle = tilt, speed = 0.0;
+  Rocked rocked;
+  int since = -1;
+  for (int i = 0; i < static_cast<int>(3.0 / dt) && rocked.energies.size() < 4; ++i) {
+    (void)run.step();
+    const double now = 2.0 * run.body(1).quat_WB.y();
+    if (now * angle < 0.0) since = 0;
+    if (since < 0) speed = speed_at_flat(now);
+    angle = now;
+    if (since < 0) continue;
+    ++since;
+    if (since == static_cast<int>(0.003 / dt)) rocked.speeds.push_back(speed_at_flat(now) / speed);
+    if (since < static_cast<int>(0.03 / dt)) continue;
+    rocked.energies.push_back(std::sqrt((energy_of(run) - flat) / energy));
+    energy = energy_of(run) - flat;
+    since = -1;
+  }
+  return rocked;
+}
+
+TEST(SecondOrder, ABlockThatRocksKeepsHousnersRatioOnBothSides) {
+  for (const Vector3& size : {Vector3(0.1, 0.2, 0.5), Vector3(0.12, 0.3, 0.4)}) {
+    const double slender = std::atan(size.x() / size.z()), sine = std::sin(slender);
+    const double expected = 1.0 - 1.5 * sine * sine;
+    for (const double start : {0.36, -0.36, 0.52, -0.52, 0.71, -0.71}) {
+      for (const double dt : {1e-3, 5e-4}) {
+        SCOPED_TRACE(testing::Message() << size.x() << " m wide, from " << start << " of its slenderness, " << dt);
+        const Rocked rocked = rock(size, start * slender, dt);
+        EXPECT_GE(rocked.energies.size(), 3U);
+        for (const double ratio : rocked.speeds) EXPECT_NEAR(ratio, expected, 5e-4);
+        for (const double ratio : rocked.energies) EXPECT_NEAR(ratio, expected, 2.5 * dt);
+      }
+    }
+  }
+}
+
+TEST(SecondOrder, ABoxThatSlidesStopsAtTheWallThatItStrikes) {
+  WorldModel model = ground_with(0.2, 1e-3, box(kBox, 1.0, {0.0, 0.0, 0.05}));
+  model.bodies.push_back(fixed_box({0.1, 2.0, 1.0}, {0.1937, 0.0, 0.5}));
+  model.finalize();
+  Simulation run(model);
+  run.body(1).velocity = Vector3(0.7, 0.0, 0.0);
+  for (int i = 0; i < 200; ++i) {
+    (void)run.step();
+    EXPECT_LT(run.body(1).p_WBcm.x(), 0.0437 + 1e-6);
+  }
+  EXPECT_NEAR(run.body(1).p_WBcm.x(), 0.0437, 1e-6);
+  EXPECT_LT(run.body(1).velocity.norm(), 1e-6);
 }
 
 }  // namespace
