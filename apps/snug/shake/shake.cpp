@@ -95,8 +95,9 @@ constexpr const char* kShakeExamples = R"(Profiles:
   eumos40509  --level g to all four sides, for 0.3 s with ramps of 50 ms; usual levels are 0.3, 0.5 and 0.8
   tilt        slowly by the angle whose tangent is --level, to all four sides
   FILE.csv    a head of time_s and any of ax, ay, az (m/s2, of the container along its axes), roll_deg, pitch_deg; then rows
-Every motion begins with the load at rest, once with the scenario's friction and once with each draw of its uncertainty;
-the worst counts. Holds: film pulls each box back to where it stood with 2 N per millimetre, at most 150 N; straps press the
+Every motion begins with the load at rest. It is run with the least friction of the scenario's and the draws, and with the
+others unless a box falls or none moves by more than a quarter of a limit; the worst counts. No time steps are taken while
+the load rests. Holds: film pulls each box back to where it stood with 2 N per millimetre, at most 150 N; straps press the
 boxes that carry no other down with 600 N in total. The container itself is fixed to what carries it.
 Exit code 0: the load holds; 1: a box shifts, tips or falls; 2: the input cannot be used.
 Examples:

@@ -22,6 +22,12 @@ constexpr double kFilmForce = 150.0;      ///< N, a box
 constexpr double kStrapForce = 600.0;     ///< N, all together
 constexpr double kFallen = 0.10;          ///< m, under the floor, or beyond the walls with the middle
 constexpr double kOnTop = 0.010;          ///< m, between a top and what stands on it
+constexpr double kTolerance = 1e-4;       ///< m/s, residual of contacts: it moves a box by 0.1 mm a second at most
+constexpr double kQuietTime = 0.020;      ///< s, below the speeds of sleep: then the load is at rest
+constexpr double kProbeTime = 0.010;      ///< s, for which a load at rest is tried under other forces
+/// Of the limits. A load that moves no farther with the least friction is not run with more: such motions of 14 loads
+/// moved no more there (docs/decisions/0130).
+constexpr double kStill = 0.25;
 
 /// The target and the boxes of the load alone: robots, benches and feeders do not travel.
 model::Scenario travelling(model::Scenario scenario, const std::vector<model::PlacementEntry>& load, double friction,
@@ -31,6 +37,7 @@ model::Scenario travelling(model::Scenario scenario, const std::vector<model::Pl
   scenario.aligner.reset();
   scenario.drops.reset();
   scenario.solver.sleep.enabled = false;  // what drives it begins while it is at rest
+  scenario.solver.tolerance = std::max(scenario.solver.tolerance, kTolerance);
   scenario.time_step = time_step.value_or(kStep * scenario.time_step);
   const auto scale = [friction](model::ContactParams& params) {
     params.friction *= friction;
@@ -83,10 +90,12 @@ class Truck {
     ShakeRun run = drive({"at rest", {{0.0, Vector3::Zero()}, {kSettle, Vector3::Zero()}}});
     reference_ = poses();
     rested_ = state_;
+    rested_steps_ = quiet_steps_;
     return run;
   }
   ShakeRun shake(const ShakeMotion& motion) {
     state_ = rested_;
+    quiet_steps_ = rested_steps_;
     return drive(motion);
   }
 
@@ -126,7 +135,10 @@ class Truck {
       if (!state_.bodies[static_cast<std::size_t>(body.index)].is_present) continue;
       Vector3 force_T = world_.model.bodies[static_cast<std::size_t>(body.index)].inertia.mass * felt_T;
       if (options_.hold == LoadHold::Film) {
-        Vector3 back = reference_[i].p - (X_WT_.inverse() * physics::pose_of(world_.model, state_, body)).p;
+        // In the middle of the step: a pull that lags by half a step would feed what sways.
+        Pose X_WP = physics::pose_of(world_.model, state_, body);
+        X_WP.p += 0.5 * world_.model.settings.dt * state_.bodies[static_cast<std::size_t>(body.index)].velocity;
+        Vector3 back = reference_[i].p - (X_WT_.inverse() * X_WP).p;
         back.z() = 0.0;
         const double pull = std::min(kFilmForce, kFilmStiffness * back.norm());
         if (back.norm() > 1e-9) force_T += pull * back.normalized();
@@ -136,6 +148,53 @@ class Truck {
     }
   }
 
+  /// One step under these forces. False: it did not come to finite numbers.
+  bool advance(const ShakeSample& sample) {
+    push(sample);
+    physics::WorldInput input;
+    input.wrenches = wrenches_;
+    const physics::StepReport report = physics::step(world_.model, input, state_, work_);
+    ++steps_;
+    const physics::SleepSettings& sleep = world_.model.settings.sleep;
+    const bool is_slow = std::ranges::all_of(state_.bodies, [&sleep](const physics::BodyState& body) {
+      return !body.is_present ||
+             (body.velocity.norm() < sleep.linear_speed && body.angular_velocity.norm() < sleep.angular_speed);
+    });
+    quiet_steps_ = is_slow ? quiet_steps_ + 1 : 0;
+    return report.status == physics::StepStatus::Converged || report.status == physics::StepStatus::NotConverged;
+  }
+
+  /// Steps that take this long, two at least.
+  [[nodiscard]] std::int64_t steps_of(double time) const {
+    return std::max<std::int64_t>(2, std::llround(time / world_.model.settings.dt));
+  }
+  [[nodiscard]] bool is_at_rest() const { return quiet_steps_ >= steps_of(kQuietTime); }
+
+  /// Whether a load at rest stays so under these forces; if not, it is as before.
+  bool rests_under(const ShakeSample& sample) {
+    const physics::WorldState before = state_;
+    for (std::int64_t i = 0; i < steps_of(kProbeTime); ++i) {
+      if (advance(sample) && is_at_rest()) continue;
+      state_ = before;
+      return false;
+    }
+    return true;
+  }
+
+  /// The step at which a load at rest is taken up again; `step` itself where it may move. The forces under which a load
+  /// can rest are a convex set: if it rests under those at both ends of a straight piece of the motion, it does
+  /// between.
+  std::int64_t skip_rest(const ShakeMotion& motion, std::int64_t step, std::int64_t steps) {
+    const double dt = world_.model.settings.dt;
+    const double now = (static_cast<double>(step) + 0.5) * dt;
+    const auto next = std::ranges::find_if(motion.samples, [now](const ShakeSample& one) { return one.time > now; });
+    if (next == motion.samples.begin() || next == motion.samples.end() || next->time == tried_) return step;
+    tried_ = next->time;
+    const auto after = std::min(steps, static_cast<std::int64_t>(std::ceil(next->time / dt - 0.5)));
+    if (after - step <= steps_of(kProbeTime)) return step;
+    return rests_under(*next) ? after : step;
+  }
+
   ShakeRun drive(const ShakeMotion& motion) {
     ShakeRun run;
     run.motion = motion.name;
@@ -143,14 +202,12 @@ class Truck {
     run.worst_X_TP = poses();
     const double dt = world_.model.settings.dt;
     const auto steps = static_cast<std::int64_t>(std::ceil(motion.duration() / dt));
+    const std::int64_t steps_before = steps_;
+    tried_ = -1.0;
     for (std::int64_t k = 0; k < steps; ++k) {
-      push(motion.at((static_cast<double>(k) + 0.5) * dt));
-      physics::WorldInput input;
-      input.wrenches = wrenches_;
-      const physics::StepReport report = physics::step(world_.model, input, state_, work_);
-      const bool is_sound =
-          report.status == physics::StepStatus::Converged || report.status == physics::StepStatus::NotConverged;
-      if (!is_sound) {
+      if (is_at_rest()) k = skip_rest(motion, k, steps);
+      if (k == steps) break;
+      if (!advance(motion.at((static_cast<double>(k) + 0.5) * dt))) {
         run.is_sound = false;
         run.worst = std::numeric_limits<double>::infinity();
         run.worst_time = static_cast<double>(k) * dt;
@@ -158,6 +215,7 @@ class Truck {
       }
       measure(static_cast<double>(k + 1) * dt, run);
     }
+    run.steps = steps_ - steps_before;
     const std::vector<Pose> now = poses();
     for (std::size_t i = 0; i < now.size(); ++i) run.boxes[i].remaining = (now[i].p - reference_[i].p).norm();
     return run;
@@ -204,6 +262,9 @@ class Truck {
   std::vector<bool> is_top_;
   std::vector<Pose> reference_;
   std::vector<physics::ExternalWrench> wrenches_;
+  std::int64_t steps_ = 0;
+  std::int64_t quiet_steps_ = 0, rested_steps_ = 0;  ///< since when all boxes have been slow; after settle()
+  double tried_ = -1.0;                              ///< s, end of the piece of motion that was tried last
 };
 
 void check(const model::Scenario& scenario, const std::vector<model::PlacementEntry>& load,
@@ -221,6 +282,46 @@ void check(const model::Scenario& scenario, const std::vector<model::PlacementEn
   if (!options.time_step) return;
   require(*options.time_step > 0.0 && *options.time_step <= 0.02, "time step", *options.time_step,
           "above 0, at most 0.02 s");
+}
+
+/// Whether more friction cannot make a motion worse: a box fell, or the load hardly moved.
+bool is_decided(const ShakeRun& least) { return std::isinf(least.worst) || least.worst <= kStill; }
+
+/// With one friction: the load at rest and those motions that are wanted. What is not wanted is absent.
+std::vector<std::optional<ShakeRun>> run_motions(const model::Scenario& scenario,
+                                                 const std::vector<model::PlacementEntry>& load,
+                                                 const std::vector<ShakeMotion>& profile, const ShakeOptions& options,
+                                                 const std::vector<bool>& is_wanted) {
+  Truck truck(scenario, load, options);
+  std::vector<std::optional<ShakeRun>> runs{truck.settle()};
+  for (std::size_t i = 0; i < profile.size(); ++i) {
+    runs.push_back(is_wanted[i + 1] ? std::optional(truck.shake(profile[i])) : std::nullopt);
+  }
+  return runs;
+}
+
+/// By friction, from the least on, then by motion. With the least friction every motion is run, with others those that
+/// are not decided by it.
+std::vector<std::vector<std::optional<ShakeRun>>> run_frictions(const model::Scenario& scenario,
+                                                                const std::vector<model::PlacementEntry>& load,
+                                                                const std::vector<ShakeMotion>& profile,
+                                                                const ShakeOptions& options,
+                                                                const std::vector<double>& frictions) {
+  std::vector<std::vector<std::optional<ShakeRun>>> runs(frictions.size());
+  std::vector<bool> is_wanted(profile.size() + 1, true);
+  const auto run = [&](std::size_t draw) {
+    runs[draw] =
+        run_motions(travelling(scenario, load, frictions[draw], options.time_step), load, profile, options, is_wanted);
+    for (std::optional<ShakeRun>& one : runs[draw]) {
+      if (one) one->friction = frictions[draw];
+    }
+  };
+  run(0);
+  for (std::size_t i = 0; i < is_wanted.size(); ++i) is_wanted[i] = !is_decided(*runs[0][i]);
+  if (std::ranges::find(is_wanted, true) == is_wanted.end()) return runs;
+  parallel_for(static_cast<int>(frictions.size()) - 1, options.threads,
+               [&](int i, int) { run(static_cast<std::size_t>(i) + 1); });
+  return runs;
 }
 
 }  // namespace
@@ -244,29 +345,24 @@ ShakeResult shake(const model::Scenario& scenario, const std::vector<model::Plac
   Rng rng = Rng(options.seed).split("shake friction");
   const double half_width = scenario.uncertainty.friction;
   for (int i = 0; i < options.draws; ++i) frictions.push_back(1.0 + rng.uniform(-half_width, half_width));
-  const std::size_t motions = profile.size() + 1;
+  std::ranges::sort(frictions);
   ShakeResult result;
   result.inner_size = model::find_container(scenario, scenario.target)->inner_size;
   for (const model::PlacementEntry& one : load) {
     result.boxes.push_back(one.parcel);
     result.sizes.push_back(model::collision_size(scenario, *model::find_parcel(scenario, one.parcel)));
   }
-  result.runs.resize(motions * frictions.size());
-  parallel_for(static_cast<int>(frictions.size()), options.threads, [&](int draw, int) {
-    const auto d = static_cast<std::size_t>(draw);
-    const model::Scenario own = travelling(scenario, load, frictions[d], options.time_step);
-    Truck truck(own, load, options);
-    for (std::size_t m = 0; m < motions; ++m) {
-      ShakeRun& run = result.runs[m * frictions.size() + d];
-      run = m == 0 ? truck.settle() : truck.shake(profile[m - 1]);
-      run.friction = frictions[d];
+  auto runs = run_frictions(scenario, load, profile, options, frictions);
+  for (std::size_t m = 0; m <= profile.size(); ++m) {
+    for (std::vector<std::optional<ShakeRun>>& own : runs) {
+      if (m >= own.size() || !own[m]) continue;
+      result.seconds += m == 0 ? kSettle : profile[m - 1].duration();
+      result.runs.push_back(std::move(*own[m]));
     }
-  });
+  }
   for (std::size_t i = 0; i < result.runs.size(); ++i) {
     if (result.runs[i].worst > result.runs[result.worst].worst) result.worst = i;
   }
-  result.seconds = kSettle * static_cast<double>(frictions.size());
-  for (const ShakeMotion& motion : profile) result.seconds += motion.duration() * static_cast<double>(frictions.size());
   return result;
 }
 

@@ -1,6 +1,7 @@
 // shake: a container with its load, driven with accelerations: which boxes shift, tip or fall.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,6 +49,7 @@ struct ShakeRun {
   double worst = 0.0;            ///< largest shift or tilt over its limit; infinity where a box fell
   double worst_time = 0.0;       ///< s
   std::vector<Pose> worst_X_TP;  ///< of the boxes then
+  std::int64_t steps = 0;        ///< that were simulated: a load at rest under forces that keep it there needs none
   bool is_sound = true;          ///< false: a step did not come to finite numbers, and counts as fallen
   bool operator==(const ShakeRun&) const = default;
 };
@@ -56,14 +58,16 @@ struct ShakeResult {
   std::vector<std::string> boxes;
   std::vector<Vector3> sizes;  ///< m
   Vector3 inner_size = Vector3::Zero();
-  std::vector<ShakeRun> runs;  ///< motion by motion, friction by friction
+  std::vector<ShakeRun> runs;  ///< motion by motion, from the least friction on
   std::size_t worst = 0;       ///< of runs
-  double seconds = 0.0;        ///< simulated
+  double seconds = 0.0;        ///< of motion, in all runs
   [[nodiscard]] bool holds() const { return runs.empty() || runs[worst].worst <= 1.0; }
 };
 
 /// The load at rest for half a second, then each motion of the profile from there. In the frame of the container: what
 /// accelerates it acts on each box as a force the other way. A container stays as it is, fixed on what carries it.
+/// Every motion is run with the least friction; with more only where no box falls and the load moves (a quarter of a
+/// limit). While the load rests under forces that keep it at rest, no steps are taken.
 /// Throws InputError for a load without boxes, a scenario without target and options out of range.
 [[nodiscard]] ShakeResult shake(const model::Scenario& scenario, const std::vector<model::PlacementEntry>& load,
                                 const std::vector<ShakeMotion>& profile, const ShakeOptions& options);

@@ -125,7 +125,11 @@ std::string format_shake_json(const ShakeResult& result, const ShakeWords& words
             {"hold", words.hold},           {"max_shift_mm", words.shift_mm},          {"max_tilt_deg", words.tilt_deg},
             {"simulated_s", result.seconds}};
   for (const ShakeRun& run : result.runs) {
-    Json one{{"motion", run.motion}, {"friction", run.friction}, {"sound", run.is_sound}, {"boxes", Json::array()}};
+    Json one{{"motion", run.motion},
+             {"friction", run.friction},
+             {"sound", run.is_sound},
+             {"steps", run.steps},
+             {"boxes", Json::array()}};
     for (const ShakenBox& box : run.boxes) {
       one["boxes"].push_back({{"box", box.id},
                               {"shift_mm", 1e3 * box.shift},

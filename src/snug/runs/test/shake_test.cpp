@@ -97,6 +97,18 @@ TEST(Shake, FilmAndStrapsHoldMore) {
   }
 }
 
+TEST(Shake, FilmWithoutFrictionSwaysAsFarAsASpringDoes) {
+  const Vector3 size(0.4, 0.4, 0.1);
+  ShakeOptions options = exact();
+  options.hold = LoadHold::Film;
+  options.time_step = 0.002;
+  const ShakeMotion motion{"push", {{0.0, Vector3::Zero()}, {0.002, {0.5, 0.0, 0.0}}, {4.0, {0.5, 0.0, 0.0}}}};
+  const ShakeRun run = shake(pallet(0.0, size), in_the_middle(size), {motion}, options).runs.back();
+  // 2 m a / k = 1 mm; a pull that lags makes 4 mm of it in 4 s. What this step adds is of third order: below
+  // 1 %.
+  EXPECT_NEAR(run.boxes[0].shift, 2.0 * 2.0 * 0.5 / 2000.0, 1e-5);
+}
+
 TEST(Shake, SaysOfALoadThatDoesNotStandThatItFellAtRest) {
   const Vector3 size(0.4, 0.4, 0.1);
   auto load = in_the_middle(size);
@@ -105,6 +117,44 @@ TEST(Shake, SaysOfALoadThatDoesNotStandThatItFellAtRest) {
   EXPECT_FALSE(result.holds());
   EXPECT_EQ(result.runs[0].motion, "at rest");
   EXPECT_GT(result.runs[0].worst, 1.0);
+}
+
+TEST(Shake, TakesNoStepsWhileTheLoadRestsAndSeesWhereItBeginsToSlide) {
+  const Vector3 size(0.4, 0.4, 0.1);
+  const model::Scenario scenario = pallet(0.3, size);
+  const Vector3 half(0.15 * 9.81, 0.0, 0.0);
+  const ShakeMotion motion{
+      "slow", {{0.0, Vector3::Zero()}, {10.0, half}, {30.0, half}, {31.0, 1.8 * half}, {60.0, 1.8 * half}}};
+  const ShakeRun rests = shake(scenario, in_the_middle(size), {motion}, exact()).runs.back();
+  EXPECT_LT(rests.boxes[0].shift, 1e-4);
+  EXPECT_LT(rests.steps, 200);  // of 60 000
+  // From rest up to 0.4 g in a second: beyond 0.3 g from 0.75 s on, 0.4 g (0.25 s)^3 / 6 = 10.2 mm; a step is worth
+  // 0.1.
+  const ShakeMotion ramp{"ramp", {{0.0, Vector3::Zero()}, {1.0, {0.4 * 9.81, 0.0, 0.0}}}};
+  const ShakeRun slides = shake(scenario, in_the_middle(size), {ramp}, exact()).runs.back();
+  EXPECT_NEAR(slides.boxes[0].shift, 0.4 * 9.81 * 0.25 * 0.25 * 0.25 / 6.0, 2e-4);
+  EXPECT_GT(slides.steps, 900);
+}
+
+TEST(Shake, RunsMoreFrictionsWhereTheLeastDoesNotDecide) {
+  const Vector3 size(0.4, 0.4, 0.1);
+  ShakeOptions options = exact();
+  options.draws = 3;
+  const auto runs_at = [&](double acceleration, double seconds) {
+    const ShakeMotion motion{
+        "m", {{0.0, Vector3::Zero()}, {0.001, {acceleration, 0.0, 0.0}}, {seconds, {acceleration, 0.0, 0.0}}}};
+    return shake(pallet(0.3, size), in_the_middle(size), {motion}, options).runs;
+  };
+  EXPECT_EQ(runs_at(0.1 * 9.81, 0.4).size(), 2U) << "at rest, and the motion once: it stands";
+  const std::vector<ShakeRun> slides = runs_at(0.5 * 9.81, 0.4);
+  ASSERT_EQ(slides.size(), 8U) << "four frictions, each with its rest";
+  for (std::size_t i = 5; i < slides.size(); ++i) {
+    EXPECT_GT(slides[i].friction, slides[i - 1].friction);
+    EXPECT_LT(slides[i].worst, slides[i - 1].worst) << "less slides with more friction";
+  }
+  const std::vector<ShakeRun> falls = runs_at(0.9 * 9.81, 1.0);
+  ASSERT_EQ(falls.size(), 2U) << "nothing is worse than a box that falls";
+  EXPECT_TRUE(falls.back().boxes[0].fell);
 }
 
 TEST(Shake, GivesTheSameBytesAtAnyNumberOfThreads) {
