@@ -4,11 +4,18 @@
 #include "jam_scene.hpp"
 #include "second_opinion.hpp"
 #include "snug/core/rng.hpp"
+#include "snug/physics/internal/scratch.hpp"
 
 namespace snug::physics::test {
 namespace {
 
 constexpr int kSweepsBeforeNewton = 6;  // docs/theory/contact.md, 4
+
+/// Whether the last step has contacts that were found at its end: their arms are of there, which reports do not say.
+bool has_swept_contacts(Workspace& work) {
+  const auto& contacts = work.scratch().contacts;
+  return std::any_of(contacts.begin(), contacts.end(), [](const internal::Contact& c) { return c.point < 0; });
+}
 
 class Jam : public testing::TestWithParam<double> {};
 
@@ -16,12 +23,16 @@ TEST_P(Jam, IsSolvedToTheLawsWhereTwoHundredSweepsFail) {
   const WorldModel model = jammed_boxes(2e-4);
   const Press press(GetParam());
   Simulation run(model);
-  int hard = 0, failed = 0;
+  int hard = 0, failed = 0, swept = 0;
   for (int i = 0; i < 300; ++i) {
     SCOPED_TRACE(i);
     const WorldState before = run.state;
     const StepReport report = run.step(press.input());
     ASSERT_EQ(report.status, StepStatus::Converged);
+    if (has_swept_contacts(run.work)) {
+      ++swept;
+      continue;
+    }
     const StepProblem problem(model, before, run.work.contacts(), press.input());
     const auto impulses = problem.reported_impulses();
     const auto motion = problem.motion_from(impulses);
@@ -33,8 +44,9 @@ TEST_P(Jam, IsSolvedToTheLawsWhereTwoHundredSweepsFail) {
       ASSERT_LE((motion[b].w - run.state.bodies[b].angular_velocity).norm(), 1e-8);
     }
     if (report.sweeps <= kSweepsBeforeNewton) continue;
-    if (++hard % 8 == 1 && problem.violation_after_sweeps(200) > model.settings.tolerance) ++failed;
+    if (++hard % 4 == 1 && problem.violation_after_sweeps(200) > model.settings.tolerance) ++failed;
   }
+  EXPECT_LE(swept, 15);
   EXPECT_GE(hard, 20);
   EXPECT_GE(failed, 3) << "the scene is no test for Newton's method any more";
 }
