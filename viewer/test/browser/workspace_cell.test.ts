@@ -200,8 +200,8 @@ describe("templates", () => {
     const page = await openPage();
     for (const [template, arm] of [["ur", "ur5e.urdf"], ["gantry", "gantry.urdf"]] as const) {
       await begin(page, template);
+      await textHas(page, `  urdf: ${arm}\n`);
       await page.getByText(/All \d+ places of pick are reached/).waitFor();
-      expect(await text(page)).toContain(`  urdf: ${arm}\n`);
       expect(readFileSync(join(folder, arm), "utf8")).toBe(readFileSync(join(repository, "scenarios/robots", arm), "utf8"));
       await picture(page, `workspace-template-${template}`);
     }
