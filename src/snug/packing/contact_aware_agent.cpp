@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <set>
 #include <span>
 #include <string_view>
 #include <unordered_set>
@@ -106,6 +107,37 @@ std::vector<Policy> policies_for(const Planning& planning, std::span<const Item>
   return policies;
 }
 
+/// Ticks that remain of a length when edges of these items are put on it one after the other, at least.
+int least_rest(std::span<const Item> kinds, int length) {
+  std::vector<bool> is_reached(static_cast<std::size_t>(length) + 1, false);
+  is_reached[0] = true;
+  std::set<std::size_t> edges;
+  for (const Item& kind : kinds) {
+    for (int axis = 0; axis < (kind.upright_only ? 2 : 3); ++axis)
+      edges.insert(static_cast<std::size_t>(std::max(1, to_ticks(kind.size[axis]))));
+  }
+  int longest = 0;
+  for (std::size_t at = 0; at < is_reached.size(); ++at) {
+    if (!is_reached[at]) continue;
+    longest = static_cast<int>(at);
+    for (const std::size_t edge : edges) {
+      if (at + edge < is_reached.size()) is_reached[at + edge] = true;
+    }
+  }
+  return length - longest;
+}
+
+/// The rim of a pallet stays free where no row of boxes reaches from edge to edge: a quarter of what is left, so that
+/// nothing is lost where boxes are larger than expected, and 3 mm at most. Boxes at the rim move outward by a few
+/// millimetres when others are put beside them.
+void keep_rim_free(std::span<const Item> kinds, Planning& planning) {
+  constexpr double kWidest = 0.003;  // m
+  for (int axis = 0; axis < 2; ++axis) {
+    const double rest = least_rest(kinds, to_ticks(planning.inner_size[axis])) / kTicksPerMetre;
+    planning.inner_size[axis] -= 2.0 * std::min(kWidest, 0.25 * rest);
+  }
+}
+
 class ContactAwareAgent : public Agent {
  public:
   explicit ContactAwareAgent(AgentInput input) : input_(std::move(input)) {}
@@ -117,7 +149,7 @@ class ContactAwareAgent : public Agent {
 
   Expected<Decision, NoPlace> decide_with_costs(const ContainerState& state, const Item& item,
                                                 const PlaceCost& cost) override {
-    Expected<Decision, NoPlace> decision = decide_planned(state, item, plan_for_contact(state, input_.settings), cost);
+    Expected<Decision, NoPlace> decision = decide_planned(state, item, plan_in(state, input_.settings), cost);
     const bool is_full =
         !decision && (decision.error() == NoPlace::NoSpace || decision.error() == NoPlace::NoStablePlace);
     if (!is_full) return decision;
@@ -129,10 +161,10 @@ class ContactAwareAgent : public Agent {
                                              double pressed) override {
     if (!input_.run.tries_places) return tl::unexpected(NoPlace::NoSpace);
     PackingSettings settings = input_.settings;
-    const double least = std::max(pressed, plan_for_contact(state, settings).planned_interference);
+    const double least = std::max(pressed, plan_in(state, settings).planned_interference);
     for (const double share : {0.5, 1.0}) {  // gently first: what has to give way less is more often pushed aside
       settings.planned_interference = share * input_.settings.last_interference;
-      const Planning planning = plan_for_contact(state, settings);
+      const Planning planning = plan_in(state, settings);
       if (planning.planned_interference <= least) continue;
       Expected<Decision, NoPlace> decision = decide_planned(state, item, planning, cost);
       if (!decision) continue;
@@ -143,7 +175,7 @@ class ContactAwareAgent : public Agent {
   }
 
   std::optional<double> expected_percent(const ContainerState& state) override {
-    const Planning planning = plan_for_contact(state, input_.settings);
+    const Planning planning = plan_in(state, input_.settings);
     const std::vector<Item>& kinds = input_.future.kinds;
     Outlook outlook = look_ahead(planning, state, nullptr);
     outlook.race.first_futures = kFutures;
@@ -310,6 +342,12 @@ class ContactAwareAgent : public Agent {
     if (pieces_.empty() || interference_ != planning.planned_interference) pieces_ = pieces_of(planning, input_.future);
     interference_ = planning.planned_interference;
     return pieces_;
+  }
+
+  [[nodiscard]] Planning plan_in(const ContainerState& state, const PackingSettings& settings) const {
+    Planning planning = plan_for_contact(state, settings);
+    if (!state.has_walls && !input_.future.kinds.empty()) keep_rim_free(input_.future.kinds, planning);
+    return planning;
   }
 
   AgentInput input_;

@@ -55,6 +55,43 @@ TEST_P(EveryAgent, StaysOverTheSlabOfAPallet) {
   test::expect_sound(state, 0.0, PackingSettings().min_support);  // nothing gives way: nothing holds it from the side
 }
 
+/// Least distance of a box from an edge, m, and how many are in a layer; cartons of 600 x 400 mm alone.
+std::pair<double, int> pack_cartons(double length, double width) {
+  ContainerState state;
+  state.inner_size = Vector3(length, width, 0.3);
+  state.has_walls = false;
+  std::vector<Item> cartons;
+  for (int i = 0; i < 8; ++i) {
+    cartons.push_back(make_box("C" + std::to_string(i), {0.6, 0.4, 0.3}));
+    cartons.back().upright_only = true;
+  }
+  const FutureModel future{cartons, std::vector<double>(cartons.size(), 1.0), true};
+  const auto agent = make_agent(
+      "contact-aware", {.settings = {}, .future = future, .sequence = {}, .is_reachable = {}, .run = {.time = 0.05}});
+  double rim = length;
+  for (const Item& carton : cartons) {
+    const auto decision = agent->decide(state, carton);
+    if (!decision) break;
+    state = with_candidate(std::move(state), carton, decision->candidates.front());
+    const Extent extent = bounding_extent(state.boxes.back());
+    const Vector3 outer = extent.high.cwiseMax(-extent.low);
+    rim = std::min({rim, 0.5 * length - outer.x(), 0.5 * width - outer.y()});
+  }
+  return {rim, static_cast<int>(state.boxes.size())};
+}
+
+TEST(ContactAwareAgent, LeavesTheRimOfAPalletFreeWhereNoRowReachesAcrossIt) {
+  const auto [rim, count] = pack_cartons(1.23, 1.03);
+  EXPECT_NEAR(rim, 0.003, 1e-4) << "30 mm are left of either length: 3 mm at most";
+  EXPECT_EQ(count, 5);
+  const auto [no_rim, all] = pack_cartons(1.2, 0.8);
+  EXPECT_NEAR(no_rim, 0.0, 1e-4) << "two rows of two fill it";
+  EXPECT_EQ(all, 4);
+  const auto [narrow_rim, same] = pack_cartons(1.208, 0.808);
+  EXPECT_NEAR(narrow_rim, 0.002, 1e-4) << "a quarter of 8 mm";
+  EXPECT_EQ(same, 4);
+}
+
 TEST(ContactAwareAgent, FillsAPalletLayerByLayer) {
   constexpr std::size_t kInLayer = 5, kLayers = 6;
   ContainerState state;
