@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
-#include <set>
 #include <span>
 #include <string_view>
 #include <unordered_set>
@@ -107,34 +106,18 @@ std::vector<Policy> policies_for(const Planning& planning, std::span<const Item>
   return policies;
 }
 
-/// Ticks that remain of a length when edges of these items are put on it one after the other, at least.
-int least_rest(std::span<const Item> kinds, int length) {
-  std::vector<bool> is_reached(static_cast<std::size_t>(length) + 1, false);
-  is_reached[0] = true;
-  std::set<std::size_t> edges;
-  for (const Item& kind : kinds) {
-    for (int axis = 0; axis < (kind.upright_only ? 2 : 3); ++axis)
-      edges.insert(static_cast<std::size_t>(std::max(1, to_ticks(kind.size[axis]))));
-  }
-  int longest = 0;
-  for (std::size_t at = 0; at < is_reached.size(); ++at) {
-    if (!is_reached[at]) continue;
-    longest = static_cast<int>(at);
-    for (const std::size_t edge : edges) {
-      if (at + edge < is_reached.size()) is_reached[at + edge] = true;
-    }
-  }
-  return length - longest;
-}
-
 /// The rim of a pallet stays free where no row of boxes reaches from edge to edge: a quarter of what is left, so that
 /// nothing is lost where boxes are larger than expected, and 3 mm at most. Boxes at the rim move outward by a few
 /// millimetres when others are put beside them.
 void keep_rim_free(std::span<const Item> kinds, Planning& planning) {
   constexpr double kWidest = 0.003;  // m
-  for (int axis = 0; axis < 2; ++axis) {
-    const double rest = least_rest(kinds, to_ticks(planning.inner_size[axis])) / kTicksPerMetre;
-    planning.inner_size[axis] -= 2.0 * std::min(kWidest, 0.25 * rest);
+  std::vector<int> edges;
+  for (const Item& kind : kinds) {
+    for (int axis = 0; axis < (kind.upright_only ? 2 : 3); ++axis) edges.push_back(to_ticks(kind.size[axis]));
+  }
+  const WasteTable rest(edges, to_ticks(planning.inner_size.head<2>().maxCoeff()));
+  for (double& length : planning.inner_size.head<2>()) {
+    length -= 2.0 * std::min(kWidest, 0.25 * rest.waste(to_ticks(length)) / kTicksPerMetre);
   }
 }
 

@@ -51,12 +51,12 @@ const Geom& geom_of(const WorldModel& model, std::uint32_t geom) {
   return model.bodies[static_cast<std::size_t>(ref.body)].geoms[static_cast<std::size_t>(ref.geom)];
 }
 
-bool is_round(const Geom& geom) {
-  return std::holds_alternative<geometry::Capsule>(geom.shape) ||
-         std::holds_alternative<geometry::Cylinder>(geom.shape);
-}
-
 }  // namespace
+
+bool is_round(const WorldModel& model, std::uint32_t geom) {
+  const geometry::Shape& shape = geom_of(model, geom).shape;
+  return std::holds_alternative<geometry::Capsule>(shape) || std::holds_alternative<geometry::Cylinder>(shape);
+}
 
 bool follows_path(const WorldModel& model, const WorldState& state, const Scratch& work, const Patch& patch,
                   const Contact& contact) {
@@ -69,7 +69,7 @@ bool follows_path(const WorldModel& model, const WorldState& state, const Scratc
     return false;
   const bool is_a = a.active >= 0;
   const bool rides = is_a ? b.turns : a.turns;
-  return rides || is_round(geom_of(model, is_a ? pair.geom_a : pair.geom_b));
+  return rides || is_round(model, is_a ? pair.geom_a : pair.geom_b);
 }
 
 ContactArms arms_of(const WorldModel& model, const WorldState& state, const Scratch& work, const Patch& patch,

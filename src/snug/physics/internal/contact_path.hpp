@@ -13,6 +13,9 @@ struct ContactArms {
   Vector3 a_mid, a_end, b_mid, b_end;
 };
 
+/// Whether points of contact move along the surface of the geom while its body turns. `geom`: of WorldModel::geoms.
+[[nodiscard]] bool is_round(const WorldModel& model, std::uint32_t geom);
+
 /// Whether the arms of a contact are those of the middle and the end of the step, as where motion is smooth: it bore in
 /// the step before and neither closes nor opens fast, between a body that the solver moves and one that it does not,
 /// and something round rolls or something rides on what turns. Elsewhere the arms of the start serve.

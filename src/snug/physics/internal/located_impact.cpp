@@ -1,8 +1,11 @@
+// Located impact: a body that bears on fixed supports and strikes them with another point, as a block that rocks does.
 #include "snug/physics/internal/located_impact.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "snug/physics/internal/contact_path.hpp"
 
 namespace snug::physics::internal {
 namespace {
@@ -29,13 +32,6 @@ struct Problem {
   int body = -1;  ///< in Scratch::bodies
   std::array<Before, kMostRows> before;
 };
-
-/// Whether the points of touch move along the surface of the geom while the body turns.
-bool is_round(const WorldModel& model, std::uint32_t geom) {
-  const WorldModel::GeomRef& ref = model.geoms[geom];
-  const Geom& of = model.bodies[static_cast<std::size_t>(ref.body)].geoms[static_cast<std::size_t>(ref.geom)];
-  return std::holds_alternative<geometry::Capsule>(of.shape) || std::holds_alternative<geometry::Cylinder>(of.shape);
-}
 
 }  // namespace
 
