@@ -272,7 +272,8 @@ void collide_boxes(const Box& A, const Box& B, const PairCall& call, Axis& axis,
   double separation = 0.0;
   const BoxAxis chosen = choose(pair, axes, axis, separation);
   axis = chosen.axis;
-  if (is_corner_pair(pair, axes, chosen)) return;
+  out.is_corner_pair = is_corner_pair(pair, axes, chosen);
+  if (out.is_corner_pair) return;
   if (parallel_edge_contact(pair, axes, chosen, call, out)) return;
   if (contact_along(pair, chosen, separation, call, out)) return;
   if (separation > 0.0) return collide_apart(A, B, pair.R_AB, pair.p_AB, chosen.n_A, call, out);

@@ -107,6 +107,7 @@ void collide(const Shape& A, const Pose& X_WA, const Shape& B, const Pose& X_WB,
              Manifold& out) noexcept {
   out.count = 0;
   out.face_area = std::numeric_limits<double>::infinity();
+  out.is_corner_pair = false;
   const bool swapped = is_swapped(A, X_WA, B, X_WB);
   const Shape& first = swapped ? B : A;
   const Shape& second = swapped ? A : B;

@@ -504,7 +504,8 @@ void collide_polytope_cylinder(const Polytope& A, double radius, const Cylinder&
     chosen = best_flat;
   }
   axis = axis_of(is_near ? chosen : best);
-  if (!is_near || is_corner_pair(A, round, chosen, faces, ends)) return;
+  out.is_corner_pair = is_near && is_corner_pair(A, round, chosen, faces, ends);
+  if (!is_near || out.is_corner_pair) return;
   PolytopeStorage room;
   const Polytope part = part_of(round, -chosen.n, room);
   const Facing facing{A, part, radius, chosen.n, chosen.separation, call};

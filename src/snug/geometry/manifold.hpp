@@ -27,6 +27,8 @@ struct Manifold {
   /// m^2, of the rectangle along one of the two faces that holds the region where they overlap, within the margin or
   /// not; 0 where edges or corners of boxes meet. Known for two boxes; other shapes: infinite.
   double face_area = std::numeric_limits<double>::infinity();
+  /// Within the margin, without points although: seen alone, what is flush there would be a wall (README.md, "Seams").
+  bool is_corner_pair = false;
 };
 
 /// What a pair remembers between calls: the features that separated it last. Only saves time and breaks ties.

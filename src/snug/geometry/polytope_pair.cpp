@@ -290,7 +290,8 @@ void collide_polytopes(const PolytopePair& pair, const PairCall& call, Axis& axi
   double separation = 0.0;
   const PolytopeAxis chosen = choose(pair, axes, axis, separation);
   axis = chosen.axis;
-  if (is_corner_pair(pair, axes, chosen)) return;
+  out.is_corner_pair = is_corner_pair(pair, axes, chosen);
+  if (out.is_corner_pair) return;
   if (contact_along(pair, chosen, separation, call, out)) return;
   if (separation > 0.0) return apart_contact(pair, chosen.n, call, out);
   // What was chosen for the sake of the past, or by preference, has nothing to show: the best of the other kind.

@@ -63,8 +63,9 @@ bool BodyState::operator==(const BodyState& other) const {
 bool PairState::operator==(const PairState& other) const {
   return geom_a == other.geom_a && geom_b == other.geom_b && cache == other.cache && count == other.count &&
          is_known == other.is_known && p_AB == other.p_AB && quat_AB.coeffs() == other.quat_AB.coeffs() &&
-         margin == other.margin && face_area == other.face_area && n_A == other.n_A && t_A == other.t_A &&
-         turning == other.turning && std::equal(points.begin(), points.begin() + count, other.points.begin()) &&
+         is_corner_pair == other.is_corner_pair && margin == other.margin && face_area == other.face_area &&
+         n_A == other.n_A && t_A == other.t_A && turning == other.turning &&
+         std::equal(points.begin(), points.begin() + count, other.points.begin()) &&
          std::equal(impulses.begin(), impulses.begin() + count, other.impulses.begin());
 }
 
@@ -303,7 +304,7 @@ std::uint64_t hash_of(const WorldState& state) {
     hash.add((static_cast<std::uint64_t>(pair.count) << 33) | (static_cast<std::uint64_t>(pair.is_known) << 32) |
              pair.cache.features);
     add(pair.p_AB);
-    hash.add(pair.margin);  // the face_area follows from p_AB, quat_AB and this
+    hash.add(pair.margin);  // face_area and is_corner_pair follow from p_AB, quat_AB and this
     add(pair.n_A), add(pair.t_A);
     for (int i = 0; i < 4; ++i) hash.add(pair.quat_AB.coeffs()[i]);
     for (int i = 0; i < pair.count; ++i) {

@@ -158,7 +158,8 @@ struct PairState {
   std::uint32_t geom_a = 0, geom_b = 0;
   geometry::PairCache cache;
   int count = 0;
-  bool is_known = false;  ///< the manifold below belongs to the relative pose below
+  bool is_known = false;        ///< the manifold below belongs to the relative pose below
+  bool is_corner_pair = false;  ///< geometry::Manifold::is_corner_pair
   Vector3 p_AB = Vector3::Zero();
   Quaternion quat_AB = Quaternion::Identity();
   double margin = 0.0;             ///< m, up to which the manifold was looked for

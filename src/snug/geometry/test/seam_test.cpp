@@ -92,6 +92,19 @@ TEST(Seam, HairlineOverlapInHeightIsNoWall) {
   }
 }
 
+TEST(Seam, ACornerPairIsNamed) {
+  const Pose X_WT = at(0, 0, -kTile.half.z());
+  const auto is_named = [&](double x, double z) {
+    return collide_once(kTile, X_WT, kSlider, at(0.1 + kSlider.half.x() + x, 0, kSlider.half.z() + z), kMargin)
+        .is_corner_pair;
+  };
+  EXPECT_TRUE(is_named(1e-3, 0.0));
+  EXPECT_TRUE(is_named(1e-3, -20e-6));
+  EXPECT_FALSE(is_named(1e-3, -1e-4));  // a wall
+  EXPECT_FALSE(is_named(5e-3, 0.0));    // beyond the margin
+  EXPECT_FALSE(is_named(-5e-2, 0.0));   // a floor
+}
+
 TEST(Seam, ARealStepIsAWall) {
   const Manifold m = collide_once(kTile, at(0, 0, -kTile.half.z()), kSlider,
                                   at(0.1 + kSlider.half.x() + 1e-4, 0, kSlider.half.z() - 1e-4), kMargin);

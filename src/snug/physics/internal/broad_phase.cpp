@@ -177,6 +177,7 @@ void copy_pair(const PairState& from, PairState& to) {
   to.cache = from.cache;
   to.count = from.count;
   to.is_known = from.is_known;
+  to.is_corner_pair = from.is_corner_pair;
   to.p_AB = from.p_AB;
   to.quat_AB = from.quat_AB;
   to.margin = from.margin;

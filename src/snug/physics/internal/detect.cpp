@@ -58,7 +58,8 @@ PairVisit find_contacts(const PairBodies& bodies, double reach, double dt, const
   const Vector3 n = a.R_WB * pair.n_A;
   PairVisit visit;
   visit.count = 0;
-  visit.clearance = visit.reach_to = pair.margin;
+  visit.clearance = pair.is_corner_pair ? 0.0 : pair.margin;
+  visit.reach_to = pair.margin;
   for (int i = 0; i < pair.count; ++i) {
     const PairPoint& point = pair.points[static_cast<std::size_t>(i)];
     const Vector3 p_WA = a.R_WB * point.p_A + a.p_WB;
@@ -240,21 +241,27 @@ void fill_visited(const WorldModel& model, double reach, WorldState& state, Scra
   });
 }
 
+/// Whether the pair may end the step inside each other although it has no contacts at its start.
+bool is_rigid_corner_pair(const WorldModel& model, const PairBodies& bodies, const PairState& pair) {
+  return pair.is_corner_pair && model.law(bodies.geom_a.material, bodies.geom_b.material).stiffness <= 0.0;
+}
+
 /// One pair. Returns whether it touches.
 bool visit_pair(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work, std::uint32_t index,
                 double reach, double margin) {
   PairState& pair = state.pairs[index];
   const PairBodies bodies = bodies_of(model, pair);
-  if (work.has_visits && work.visits[index].count != PairVisit::kNone)
-    return place_contacts(bodies, index, work.visits[index], work);
-  if (ignores_held(bodies, input)) {
+  const bool was_visited = work.has_visits && work.visits[index].count != PairVisit::kNone;
+  if (!was_visited && ignores_held(bodies, input)) {
     pair.count = 0;
     pair.is_known = false;
     work.pair_memories[index] = {bodies.a, bodies.b, -1, -1.0, 0};
     return false;
   }
-  refresh_manifold(bodies, state, reach, margin, is_face(model, bodies), index, work, pair);
-  return add_contacts(model, bodies, index, reach, pair, work);
+  if (!was_visited) refresh_manifold(bodies, state, reach, margin, is_face(model, bodies), index, work, pair);
+  work.has_corner_pairs |= is_rigid_corner_pair(model, bodies, pair);
+  return was_visited ? place_contacts(bodies, index, work.visits[index], work)
+                     : add_contacts(model, bodies, index, reach, pair, work);
 }
 
 /// One walk over the pairs that were not looked at before. Whether something woke: then others matter.
@@ -322,7 +329,7 @@ void detect_contacts(const WorldModel& model, const WorldInput& input, WorldStat
   const double margin = std::max(model.settings.contact_margin, 1.5 * reach);
   work.patches.clear();
   work.contacts.clear();
-  work.has_too_many_contacts = false;
+  work.has_too_many_contacts = work.has_corner_pairs = false;
   work.lost_impulses.all.clear();
   std::fill_n(work.pair_done.begin(), state.pairs.size(), char{0});
   visit_pairs(model, input, state, work, reach, margin);

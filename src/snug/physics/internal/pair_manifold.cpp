@@ -119,6 +119,7 @@ std::uint32_t find_manifold(const PairBodies& bodies, const BodyWork& a, const B
   pair.quat_AB = now.quat;
   pair.margin = margin;
   pair.face_area = manifold.face_area;
+  pair.is_corner_pair = manifold.is_corner_pair;
   pair.n_A = a.R_WB.transpose() * manifold.n_AB_W;
   pair.t_A = tangent_of(pair.n_A);
   pair.count = manifold.count;

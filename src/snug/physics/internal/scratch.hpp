@@ -195,7 +195,8 @@ struct Scratch {
   int island_count = 0;
   std::vector<int> island_order;  ///< those with most rows first
   bool has_too_many_contacts = false;
-  bool has_belts = false;  ///< the model: surfaces that run
+  bool has_belts = false;         ///< the model: surfaces that run
+  bool has_corner_pairs = false;  ///< among the pairs of rigid geoms that were looked at
   SharedSupports shared_supports;
   LostImpulses lost_impulses;
 

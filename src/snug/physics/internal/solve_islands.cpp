@@ -217,32 +217,77 @@ void keep_memory(BodyWork& body, BodyMemory& memory) {
   memory.active = -1;
 }
 
-/// Euler's equations in principal axes by the implicit midpoint rule; keeps energy and angular momentum where the
-/// impulse of the torque [N m s, W, at the middle of the step] is zero. Returns the angular velocity at the end.
-Vector3 turn(const WorldModel::MassProperties& mass, const BodyWork& body, const Vector3& torque_W, double dt) {
-  const Matrix3 R_WI = body.R_WB * mass.R_BI;
+/// A body that turns.
+struct Spin {
+  Matrix3 R_WI;     ///< principal axes
+  Vector3 angular;  ///< rad/s, W
+};
+
+/// Euler's equations by the implicit midpoint rule; keeps energy and angular momentum where the impulse of the torque
+/// [N m s, W, at the middle of the step] is zero. False where the step is too long for its iteration.
+bool turn(const WorldModel::MassProperties& mass, const Vector3& torque_W, double dt, Spin& spin) {
   const Vector3 inertia = mass.inverse_inertia.cwiseInverse();
-  const Vector3 w0 = R_WI.transpose() * body.angular_start;
+  const Vector3 w0 = spin.R_WI.transpose() * spin.angular;
   const bool is_pushed = !torque_W.isZero(0.0);
-  const Matrix3 R_WI_mid = is_pushed ? Matrix3(exp_rotation(0.5 * dt * body.angular_start) * R_WI) : R_WI;
+  const Matrix3 R_WI_mid = is_pushed ? Matrix3(exp_rotation(0.5 * dt * spin.angular) * spin.R_WI) : spin.R_WI;
   const Vector3 push =
       is_pushed ? Vector3(mass.inverse_inertia.cwiseProduct(R_WI_mid.transpose() * torque_W)) : Vector3::Zero();
   Vector3 w1 = w0;
+  double change = 0.0;
   for (int k = 0; k < 20; ++k) {
     const Vector3 mid = 0.5 * (w0 + w1);
     Vector3 next = w0 - dt * mass.inverse_inertia.cwiseProduct(mid.cross(inertia.cwiseProduct(mid)));
     if (is_pushed) next += push;
-    const double change = (next - w1).norm();
+    change = (next - w1).norm();
     w1 = next;
     if (change <= 1e-14 * (1.0 + w0.norm())) break;
   }
-  return R_WI * (exp_rotation(0.5 * dt * (w0 + w1)) * w1);
+  if (!(change <= 1e-9 * (1.0 + w0.norm()))) return false;
+  const Matrix3 turned = exp_rotation(0.5 * dt * (w0 + w1));
+  spin = {spin.R_WI * turned, spin.R_WI * (turned * w1)};
+  return true;
+}
+
+/// The angular velocity w at the end of a step that turns the body by dt/2 (w_0 + w), if it is `angular_I` in the
+/// body's axes then: keeps the energy that `turn` keeps. Zero where the step is too long for its iteration.
+Vector3 carried(const Matrix3& R_WI, const Vector3& angular_start, const Vector3& angular_I, double dt,
+                const Vector3& guess) {
+  const Vector3 from_start = R_WI * angular_I;
+  Vector3 angular = guess;
+  for (int k = 0; k < 50; ++k) {
+    const Vector3 next = exp_rotation(0.5 * dt * (angular_start + angular)) * from_start;
+    const double change = (next - angular).norm();
+    angular = next;
+    if (change <= 1e-9 * (1.0 + angular_start.norm())) return angular;
+  }
+  return Vector3::Zero();
+}
+
+/// The same for a whole step, in as many parts as it takes. Returns the angular velocity at the end, W.
+Vector3 turn_freely(const WorldModel::MassProperties& mass, const BodyWork& body, const Vector3& torque_W, double dt) {
+  constexpr int kMaxParts = 1024;
+  constexpr double kLongTurn = 0.1;  ///< rad in a step
+  const Matrix3 R_WI = body.R_WB * mass.R_BI;
+  for (int parts = 1; parts <= kMaxParts; parts *= 2) {
+    Spin spin{R_WI, body.angular_start};
+    int done = 0;
+    while (done < parts && turn(mass, torque_W / parts, dt / parts, spin)) ++done;
+    if (done < parts) continue;
+    if (dt * body.angular_start.norm() <= kLongTurn) return spin.angular;
+    const Vector3 angular = carried(R_WI, body.angular_start, spin.R_WI.transpose() * spin.angular, dt, spin.angular);
+    return angular.isZero(0.0) ? spin.angular : angular;
+  }
+  return body.angular_start;
 }
 
 /// Whether gyroscopic torque matters.
 bool turns_fast(const BodyWork& body, double dt) {
   return !body.has_element && dt * body.angular_start.squaredNorm() > 1e-9;
 }
+
+/// Part of its angular velocity by which contacts may turn a body in a step and still be taken for a motion that goes
+/// on, not for a blow.
+constexpr double kSmoothPush = 0.25;
 
 void move_freely(const WorldModel& model, const WorldModel::MassProperties& mass, const Vector3& last_torque,
                  BodyWork& body, BodyMemory& memory, Whitening& whitening) {
@@ -265,11 +310,13 @@ void move_freely(const WorldModel& model, const WorldModel::MassProperties& mass
     return;
   }
   if (!turns_fast(body, dt)) return;
-  // The gyroscopic torque is that of the motion under the contacts of the step before; what these push is left to the
-  // solver.
-  body.angular_guess = turn(mass, body, last_torque, dt);
+  // The gyroscopic torque is that of the motion under the contacts of the step before, where it is smooth; what these
+  // push is left to the solver.
+  const Vector3 push = whitening.angular * (whitening.angular.transpose() * last_torque);
+  const bool is_smooth = push.norm() <= kSmoothPush * body.angular_start.norm();
+  body.angular_guess = turn_freely(mass, body, is_smooth ? last_torque : Vector3::Zero(), dt);
   body.angular = body.angular_guess;
-  if (!last_torque.isZero(0.0)) body.angular -= whitening.angular * (whitening.angular.transpose() * last_torque);
+  if (is_smooth) body.angular -= push;
 }
 
 /// What the contacts of the step before push on bodies that turn fast.

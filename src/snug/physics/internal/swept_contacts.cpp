@@ -1,5 +1,5 @@
-// Swept contacts: what a body that turns fast would run into by the end of a step, beside the contacts found at its
-// start.
+// Swept contacts: what bodies would run into by the end of a step, beside the contacts found at its start: bodies that
+// turn fast, and pairs that had none at a seam (geometry/README.md).
 #include <algorithm>
 #include <atomic>
 
@@ -8,13 +8,10 @@
 namespace snug::physics::internal {
 namespace {
 
-/// m, way of a body's farthest point by turning in one step. Slower bodies are not looked at: manifolds found at the
-/// start of the step leave them at most that deep.
-constexpr double kFastTurn = 1e-3;
-/// m, overlap beyond that of the start which asks for contacts, at steps of 2 ms or less; twice that at 4 ms or more,
-/// where steps with many such contacts are hard to solve. With 0.5 mm random drops at 1 ms (seeds 1 to 60) are up to
-/// 1.5 mm deep, with 0.2 mm 0.6, with 0.1 mm 0.3, at the same cost. Heaps of 1000 boxes at 2 ms (seed 3) are up to
-/// 0.25 mm deep with 0.2 mm, 0.14 with 0.1.
+/// m, way of a body's farthest point by turning in one step. Slower bodies are not looked at.
+constexpr double kFastTurn = 5e-4;
+/// m, overlap which asks for contacts, at steps of 2 ms or less; twice that at 4 ms or more, where steps with many such
+/// contacts are hard to solve. Of what overlapped more already, a quarter of it beyond that.
 constexpr double kDeep = 1e-4, kDeepSpeed = 0.05;
 double deep_in(double dt) { return std::clamp(kDeepSpeed * dt, kDeep, 2.0 * kDeep); }
 
@@ -99,9 +96,9 @@ bool wake_pair(const WorldModel& model, WorldState& state, Scratch& work, int bo
   return has_woken;
 }
 
-/// Whether one of the bodies turns fast: then all ends are known.
+/// Whether there is something to look at: then all ends are known.
 bool find_ends(const WorldModel& model, Scratch& work) {
-  std::atomic<bool> is_one_fast{false};
+  std::atomic<bool> is_one_fast{work.has_corner_pairs};
   const std::size_t count = work.bodies.size();
   for_ranges(work.pool, count, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end && !is_one_fast; ++i) {
@@ -119,12 +116,12 @@ bool find_ends(const WorldModel& model, Scratch& work) {
   return is_finite;
 }
 
-/// A pair that could meet by turning: rigid, and one of the bodies turns fast.
+/// A pair that could meet beside its contacts: rigid, and one of the bodies turns fast, or corners of both are flush.
 bool may_meet(const WorldModel& model, const PairState& pair, const Scratch& work, std::size_t& law) {
   const WorldModel::GeomRef &a = model.geoms[pair.geom_a], &b = model.geoms[pair.geom_b];
-  const bool is_one_fast =
-      work.ends[static_cast<std::size_t>(a.body)].turns_fast || work.ends[static_cast<std::size_t>(b.body)].turns_fast;
-  if (!is_one_fast || !pair.is_known) return false;  // unknown: passes through what is held
+  const bool is_of_interest = pair.is_corner_pair || work.ends[static_cast<std::size_t>(a.body)].turns_fast ||
+                              work.ends[static_cast<std::size_t>(b.body)].turns_fast;
+  if (!is_of_interest || !pair.is_known) return false;  // unknown: passes through what is held
   law = static_cast<std::size_t>(geom_of(model, a).material * model.material_count + geom_of(model, b).material);
   return model.laws[law].stiffness <= 0.0;  // else gives way by its law
 }
@@ -138,7 +135,8 @@ bool meets(const WorldModel& model, const PairState& pair, double clearance, con
   geometry::collide(geom_a.shape, work.ends[static_cast<std::size_t>(a.body)].X_WB * geom_a.X_BG, geom_b.shape,
                     work.ends[static_cast<std::size_t>(b.body)].X_WB * geom_b.X_BG, model.settings.contact_margin,
                     cache, manifold);
-  return !(deepest_of(manifold) > std::min(0.0, clearance) - deep_in(model.settings.dt));
+  const double deep = deep_in(model.settings.dt);
+  return !(deepest_of(manifold) > std::min(-deep, clearance - 0.25 * deep));
 }
 
 /// Marks in work.pair_done the pairs that are not to be looked at in turn.

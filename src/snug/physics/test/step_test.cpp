@@ -66,6 +66,43 @@ TEST(FreeFlight, KeepsTheEnergyOfATumblingBody) {
   EXPECT_NEAR(kinetic_energy(model, run.state) / before, 1.0, 1e-4);
 }
 
+/// Kinetic energy over that of the start, least and most of 2000 steps without gravity.
+std::pair<double, double> energies_of_a_tumble(const Vector3& size, double dt, double rate) {
+  WorldModel model = on_plane({}, {box(size, 1.0, {0.0, 0.0, 100.0})});
+  model.gravity.setZero();
+  model.settings.dt = dt;
+  Simulation run(model);
+  set_twist(model, run.state, BodyId{1}, Twist{Vector3::Zero(), rate * Vector3(0.5, 0.7, 0.51)});
+  const double before = kinetic_energy(model, run.state);
+  std::pair<double, double> worst(1.0, 1.0);
+  for (int i = 0; i < 2000; ++i) {
+    EXPECT_EQ(run.step().status, StepStatus::Converged);
+    const double now = kinetic_energy(model, run.state) / before;
+    worst = {std::min(worst.first, now), std::max(worst.second, now)};
+  }
+  return worst;
+}
+
+TEST(FreeFlight, KeepsTheEnergyOfABodyThatTurnsByATenthOfARadianToARadianInAStep) {
+  for (const Vector3& size : {Vector3(0.1, 0.2, 0.3), Vector3(0.16, 0.03, 0.05)}) {
+    for (const auto& [dt, rate] : {std::pair(1e-3, 200.0), std::pair(1e-3, 900.0), std::pair(5e-3, 50.0)}) {
+      SCOPED_TRACE(dt * rate);
+      const auto [least, most] = energies_of_a_tumble(size, dt, rate);
+      EXPECT_GT(least, 1.0 - 1e-5);  // 2000 steps, each to 1e-9 of the angular velocity
+      EXPECT_LT(most, 1.0 + 1e-5);
+    }
+  }
+}
+
+TEST(FreeFlight, StaysFiniteWhereABodyTurnsRoundMoreThanOnceInAStep) {
+  for (const double rate : {2e3, 1e4}) {
+    SCOPED_TRACE(rate);
+    const auto [least, most] = energies_of_a_tumble({0.16, 0.03, 0.05}, 5e-3, rate);
+    EXPECT_GT(least, 0.1);  // of the inertia of the axes: 1.2e-4 to 2.3e-3 kg m^2 at 1 kg
+    EXPECT_LT(most, 10.0);
+  }
+}
+
 TEST(Friction, StopsASlidingBoxWhereCoulombSaysInEveryDirection) {
   for (const double degrees : {0.0, 22.5, 45.0, 77.0}) {
     SCOPED_TRACE(degrees);
