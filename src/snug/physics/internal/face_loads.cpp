@@ -127,6 +127,9 @@ void find_middle(std::span<const FaceLoad> corners, Bearing bearing, FaceSpread&
   spread.x = o.x + x / sum, spread.y = o.y + y / sum;
 }
 
+/// log(t + r) with r^2 = t^2 + h^2, also where t is nearly -r.
+double log_of(double t, double r, double h) { return t < 0.0 ? 2.0 * std::log(h) - std::log(r - t) : std::log(t + r); }
+
 /// Mean distance from the middle: over the area in triangles from there, or along the rim.
 double mean_distance(std::span<const FaceLoad> corners, Bearing bearing, const FaceSpread& middle) {
   double distance = 0.0, whole = 0.0;
@@ -141,7 +144,7 @@ double mean_distance(std::span<const FaceLoad> corners, Bearing bearing, const F
     // integral of the distance along the side: (t r + h^2 log(t + r))/2; over the triangle h/3 of that
     const double reach = std::abs(height);
     const bool is_line = reach <= 1e-9 * length;  // through the middle
-    const double turn = is_line ? 0.0 : height * height * std::log((to + far) / (from + near));
+    const double turn = is_line ? 0.0 : height * height * (log_of(to, far, reach) - log_of(from, near, reach));
     const double along = 0.5 * (to * far - from * near + turn);
     distance += bearing == Bearing::Face ? height / 3.0 * along : along;
     whole += bearing == Bearing::Face ? 0.5 * height * length : length;

@@ -81,6 +81,15 @@ TEST(FaceSpread, OfALineIsAQuarterAndOfAPointNothing) {
   EXPECT_EQ(internal::spread_of(point, Bearing::Face).distance, 0.0);
 }
 
+TEST(FaceSpread, OfAHairlineIsThatOfALine) {
+  for (const double width : {1e-6, 1e-8, 3e-10, 1e-11, 0.0}) {
+    SCOPED_TRACE(width);
+    std::vector<FaceLoad> hairline = {{0.0, 0.0}, {0.1, 0.0}, {0.1, width}, {0.0, width}};
+    EXPECT_NEAR(internal::spread_of(hairline, Bearing::Face).distance, 0.025, 2e-6);
+    EXPECT_NEAR(internal::spread_of(hairline, Bearing::Edges).distance, 0.025, 2e-6);
+  }
+}
+
 TEST(EvenLoads, KeepSumAndMomentsAndPullNowhere) {
   Rng rng = Rng(11).split("even loads");
   for (int k = 0; k < 2000; ++k) {
