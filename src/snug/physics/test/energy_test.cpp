@@ -124,8 +124,8 @@ TEST(Energy, NeverExceedsThatOfTheStartWithRestitution) {
 }
 
 // What contacts pushed in a blow is not what they go on to push: taken for a motion that lasts, it once turned light
-// capsules a million times as fast.
-TEST(Energy, DoesNotGrowWhereLightCapsulesAreStruck) {
+// capsules a million times as fast. And the friction of a face a hair wide was no number.
+TEST(Energy, DoesNotGrowWhereLightBodiesAreStruck) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     SCOPED_TRACE(seed);
     Rng rng = Rng(seed).split("struck");
@@ -137,12 +137,14 @@ TEST(Energy, DoesNotGrowWhereLightCapsulesAreStruck) {
       bodies.back().X_WB.R = exp_rotation(Vector3(rng.uniform(-2, 2), rng.uniform(-2, 2), rng.uniform(-2, 2)));
       if (i % 3 == 2) continue;
       const double radius = rng.uniform(0.015, 0.03), half = rng.uniform(0.02, 0.06);
-      bodies.back().geoms = {{geometry::Capsule{half, radius}, Pose{}, 0, true}};
+      bodies.back().geoms[0].shape = geometry::Capsule{half, radius};
+      if (i % 3 == 1) bodies.back().geoms[0].shape = geometry::Cylinder{half, radius};
       const double across = mass * (half * half / 3.0 + radius * radius / 4.0);
       bodies.back().inertia.inertia = Vector3(across, across, 0.5 * mass * radius * radius).asDiagonal();
     }
     WorldModel model = in_container(bodies);
     model.laws.assign(4, {0.4, 0.1, 0.0, 0.0});
+    for (ContactLaw& law : model.laws) law.bearing = Bearing{static_cast<int>(seed % 3)};
     model.settings.dt = seed % 2 == 0 ? 5e-3 : 1e-3;
     Simulation run(model);
     for (std::size_t i = 5; i < model.bodies.size(); ++i) {
