@@ -29,7 +29,7 @@ void start_body(const BodyModel& body, const WorldModel::MassProperties& mass, c
     work.p_WB = state.p_WBcm - work.R_WB * body.inertia.com;
   }
   work.active = work.island = -1;
-  work.is_moving = work.has_element = work.is_steady = work.has_result = work.turns = false;
+  work.is_moving = work.has_element = work.is_steady = work.has_result = work.turns = work.is_lone = false;
   work.has_same_pose = same;
   work.velocity_start = work.velocity = state.velocity;
   work.angular_start = work.angular = state.angular_velocity;

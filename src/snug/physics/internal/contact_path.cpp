@@ -9,6 +9,7 @@ namespace {
 /// of the radius; steeper than this (sine between axis and normal) a rim has such a direction.
 constexpr double kOnRim = 0.05;
 constexpr double kLeastSlope = 0.02;
+constexpr double kRocks = 0.01;  ///< rad/s about an axis in the plane of the contact
 
 /// A body as it moves within the step, from its start.
 struct Mover {
@@ -69,7 +70,9 @@ bool follows_path(const WorldModel& model, const WorldState& state, const Scratc
     return false;
   const bool is_a = a.active >= 0;
   const bool rides = is_a ? b.turns : a.turns;
-  return rides || is_round(model, is_a ? pair.geom_a : pair.geom_b);
+  if (rides || is_round(model, is_a ? pair.geom_a : pair.geom_b)) return true;
+  const BodyWork& body = is_a ? a : b;
+  return body.is_lone && patch.n.cross(body.angular_start).squaredNorm() > kRocks * kRocks;
 }
 
 ContactArms arms_of(const WorldModel& model, const WorldState& state, const Scratch& work, const Patch& patch,

@@ -18,7 +18,8 @@ struct ContactArms {
 
 /// Whether the arms of a contact are those of the middle and the end of the step, as where motion is smooth: it bore in
 /// the step before and neither closes nor opens fast, between a body that the solver moves and one that it does not,
-/// and something round rolls or something rides on what turns. Elsewhere the arms of the start serve.
+/// and something round rolls, something rides on what turns, or a lone body rocks. Elsewhere the arms of the start
+/// serve.
 [[nodiscard]] bool follows_path(const WorldModel& model, const WorldState& state, const Scratch& work,
                                 const Patch& patch, const Contact& contact);
 [[nodiscard]] ContactArms arms_of(const WorldModel& model, const WorldState& state, const Scratch& work,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "snug/physics/internal/contact_path.hpp"
 
@@ -100,7 +101,9 @@ void put_back(const Problem& problem) {
 void build_turned_rows(const WorldModel& model, const WorldState& state, const Island& island, const Vector3& rotation,
                        const Problem& problem, Scratch& work) {
   const Matrix3 R = exp_rotation(rotation);
-  const Vector3& p_WBcm = work.bodies[static_cast<std::size_t>(problem.body)].p_WBcm;
+  BodyWork& body = work.bodies[static_cast<std::size_t>(problem.body)];
+  const Vector3& p_WBcm = body.p_WBcm;
+  const bool turns = std::exchange(body.turns, false);  // arms are those of here
   std::array<Vector3, kMostRows> places;
   for (std::size_t i = 0; i < problem.count; ++i) {
     Vector3& p_WQ = work.contacts[static_cast<std::size_t>(problem.first[i].contact)].p_WQ;
@@ -112,6 +115,7 @@ void build_turned_rows(const WorldModel& model, const WorldState& state, const I
   arrange_planes(island, false, work);
   build_rows(model, state, work, island, false, nullptr);
   arrange_planes(island, true, work);
+  body.turns = turns;
   for (std::size_t i = 0; i < problem.count; ++i) {
     work.contacts[static_cast<std::size_t>(problem.first[i].contact)].p_WQ = places[i];
     std::fill_n(problem.first[i].lambda, 3, 0.0);

@@ -34,6 +34,7 @@ struct BodyWork {
   int island = -1;                          ///< of a body with an element
   bool is_moving = false;                   ///< dynamic and awake, or kinematic with a motion
   bool has_element = false;
+  bool is_lone = false;        ///< find_lone_body(): what it bears on may follow its path
   bool has_same_pose = false;  ///< as in this workspace's last step, bit by bit
   bool is_steady = false;      ///< and enters the rows of its contacts as it did then
   bool has_result = false;     ///< velocity holds the answer of the contact solver

@@ -46,11 +46,12 @@ void read_velocities(Scratch& work, const Island& island) {
 void solve_plain_island(const WorldModel& model, const WorldState& state, Scratch& work, Island& island,
                         IslandWorker& worker) {
   StepReport& report = worker.report;
+  const int lone = find_lone_body(model, state, work, island);
+  if (lone >= 0) work.bodies[static_cast<std::size_t>(lone)].is_lone = true;
   build_rows(model, state, work, island, true, pool_of(worker.newton.group.threads));
   arrange_planes(island, true, work);
   const auto solve = island.has_turning ? solve_with_turning : solve_rows;
   const Residuals residuals = residuals_of(model, work, island);
-  const int lone = find_lone_body(model, state, work, island);
   SolveResult result;
   if (lone < 0 || !solve_located_impact(model, state, work, island, lone, residuals, worker.newton, result))
     result = solve(model.settings, residuals, work.rows.begin() + island.first_row, work.rows.begin() + island.end_row,

@@ -26,8 +26,9 @@ class StepProblem {
     find_located();
   }
 
-  /// A body that touches fixed things alone, bears on one point and strikes with another: it is solved in order of time
-  /// (decision 0133), which is not the problem of one step. Its contacts are left out.
+  /// A body that touches fixed things alone, and rocks on one point, or bears on it and strikes with another: it is
+  /// solved with the arms of its path or in order of time (decisions 0133, 0140), which is not the problem with the
+  /// arms of the start. Its contacts are left out.
   [[nodiscard]] bool is_located(std::size_t body) const { return bodies_[body].is_located; }
 
   struct Motion {
@@ -155,7 +156,7 @@ class StepProblem {
 
   void find_located() {
     const double fall = dt_ * model_.gravity.norm();
-    std::vector<bool> meets(bodies_.size()), bears(bodies_.size()), strikes(bodies_.size());
+    std::vector<bool> meets(bodies_.size()), bears(bodies_.size()), strikes(bodies_.size()), rocks(bodies_.size());
     for (const Contact& c : contacts_) {
       const bool are_both = at(c.report.a).inverse_mass > 0.0 && at(c.report.b).inverse_mass > 0.0;
       for (const BodyId id : {c.report.a, c.report.b}) {
@@ -163,10 +164,12 @@ class StepProblem {
         if (are_both) meets[i] = true;
         if (std::abs(c.approach) <= 2.0 * fall && c.report.phi <= dt_ * fall) bears[i] = true;
         if (c.approach < -2.0 * fall) strikes[i] = true;
+        const bool lasts = std::abs(c.approach) <= model_.settings.restitution_threshold;
+        if (lasts && c.report.n_AB_W.cross(bodies_[i].w_start).norm() > 0.01) rocks[i] = true;
       }
     }
     for (std::size_t i = 0; i < bodies_.size(); ++i)
-      bodies_[i].is_located = bodies_[i].inverse_mass > 0.0 && !meets[i] && bears[i] && strikes[i];
+      bodies_[i].is_located = bodies_[i].inverse_mass > 0.0 && !meets[i] && ((bears[i] && strikes[i]) || rocks[i]);
   }
 
   [[nodiscard]] Vector3 relative_velocity(const Contact& c, const std::vector<Motion>& motion) const {
