@@ -14,10 +14,11 @@ namespace snug::cell {
 namespace {
 
 constexpr std::size_t kLooks = 16;  ///< at the joints, along a way
-/// Left of the limits: the speed between two looks is their mean, its peak lies a little above.
-constexpr double kReserve = 0.95;
+/// Left of the limits beside half of what a slope differs from that of the look before: the speed between two looks is
+/// their mean, its peak lies a little above. At the first look there is nothing to compare with.
+constexpr double kReserve = 0.985, kReserveOfFirst = 0.965;
 /// Of the joints' accelerations; what is left is for the controller, which makes up for what it is late.
-constexpr double kOfSpeedingUp = 0.5, kOfBending = 0.3;
+constexpr double kOfSpeedingUp = 0.7, kOfBending = 0.3;
 
 constexpr double kUpright = 1.0 - 1e-6;  ///< cosine: a first axis that stands upright, or hangs
 
@@ -46,7 +47,9 @@ void JointPace::limit(const motion::Way& way, std::span<double> rates, std::span
     for (Eigen::Index j = 0; j < q.size(); ++j) {
       const robot::Joint& joint = inverse_.arm().joints[static_cast<std::size_t>(j)];
       slope[j] = difference(joint, q[j], (*next)[j]) * kLooks;
-      if (slope[j] != 0.0) rate = std::min(rate, kReserve * share_ * joint.max_speed / std::abs(slope[j]));
+      if (slope[j] == 0.0) continue;
+      const double peak = std::abs(slope[j]) + (look > 0 ? 0.5 * std::abs(slope[j] - slope_before[j]) : 0.0);
+      rate = std::min(rate, (look > 0 ? kReserve : kReserveOfFirst) * share_ * joint.max_speed / peak);
     }
     lower(rates, look, rate);
     // q'' = slope s'' + bend s'^2: each may have its part of what the joints can do.

@@ -30,9 +30,9 @@ int substeps_of(const model::Scenario& scenario) {
 }
 
 // Shares of the vacuum's set point: from the first on the box is lifted, below the second the tool leaves it.
-constexpr double kSealed = 0.7;
+constexpr double kSealed = 0.5;        // 0.7 when the cup has stretched so far that it carries the box
 constexpr double kFullySealed = 0.97;  // 3.5 time constants of drawing vacuum
-constexpr double kReleased = 0.02;     // 4 time constants of losing it
+constexpr double kReleased = 0.05;     // 3 time constants of losing it
 
 /// The arm that the options ask for, or none. The tool then starts where the arm's joints put it.
 std::unique_ptr<CellArm> make_arm(model::Scenario& scenario, const model::Sequence& sequence, const std::string& name) {

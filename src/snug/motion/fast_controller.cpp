@@ -21,6 +21,9 @@ constexpr double kArrived = 0.002;
 constexpr double kLate = 0.02;
 /// Of the shorter of two motions: over at most so much of it they are blended.
 constexpr double kLargestBlend = 0.4;
+/// m: what goes straight up has cleared its neighbours so far before its end, and may begin to go away. Of that way
+/// the largest fraction, as nothing is blended at its beginning.
+constexpr double kRiseBlend = 0.08, kLargestRiseBlend = 0.65;
 /// A way that rises or falls by less than this, and this share of its level length, is level.
 constexpr double kLevel = 0.01;  ///< m
 constexpr double kGentleSlope = 0.2;
@@ -127,8 +130,13 @@ double blend_at(const PreparedProgram& plan, const ControllerState& state) {
   const double degrees = plan.settings.convergence_deg_per_metre;
   const double to = convergence_error(state.paced.start(), row, degrees);
   const double from = convergence_error(row, next, degrees);
-  const bool is_level =
-      goes_level(state.paced.start().p, row.p) && goes_level(row.p, next.p) && !is_contact_row(plan, state.row + 1);
+  if (to < kArrived) return kArrived;  // the tool is there already: it does not stop for the rest
+  const Vector3 rise = row.p - state.paced.start().p;
+  const bool touches_next = is_contact_row(plan, state.row + 1);
+  if (!touches_next && rise.z() > 0.0 && is_plumb(state.paced.start(), row)) {
+    return std::min(kRiseBlend, kLargestRiseBlend * std::min(to, from));
+  }
+  const bool is_level = goes_level(state.paced.start().p, row.p) && goes_level(row.p, next.p) && !touches_next;
   const double largest = is_level ? plan.settings.fast.level_blend : plan.settings.fast.blend;
   return std::min(largest, kLargestBlend * std::min(to, from));
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace snug::motion {
 namespace {
@@ -31,6 +32,22 @@ Most most_at(const Way& way, const Pace& pace, double share) {
   return most;
 }
 
+/// The average over the window lowers accelerations. Twice the limit goes into it where no more than the limit comes
+/// out: on ways that are never faster than the limit times the window; and, where half of the motion comes so much
+/// later that both halves do not speed up at once, in the first half of the way. Slowing down there may end in contact.
+constexpr double kBeforeAverage = 2.0;
+
+void use_average(std::span<const double> rates, const Pace& pace, std::span<double> accelerations) {
+  bool is_slow = true, is_apart = pace.shaper_delay > 0.0;
+  for (std::size_t i = 0; i < rates.size(); ++i) {
+    is_slow = is_slow && rates[i] <= accelerations[i] * pace.window;
+    is_apart = is_apart && rates[i] / (kBeforeAverage * accelerations[i]) + pace.window <= pace.shaper_delay;
+  }
+  if (!is_slow && !is_apart) return;
+  const std::size_t parts = is_slow ? accelerations.size() : accelerations.size() / 2;
+  for (double& one : accelerations.first(parts)) one *= kBeforeAverage;
+}
+
 }  // namespace
 
 PacedSegment::PacedSegment(const Way& way, const Pace& pace, const PathLimits* others) : way_(way) {
@@ -44,6 +61,7 @@ PacedSegment::PacedSegment(const Way& way, const Pace& pace, const PathLimits* o
     before = after;
   }
   if (others != nullptr) others->limit(way, rates, accelerations);
+  use_average(rates, pace, accelerations);
   profile_ = PathProfile(rates, accelerations, {pace.window, pace.shaper_delay});
 }
 

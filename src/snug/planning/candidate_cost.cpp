@@ -10,7 +10,7 @@
 namespace snug::planning {
 
 std::optional<GraspOutline> outline_of(const Scene& scene, const StandingBox& box,
-                                       const packing::Orientation& orientation) {
+                                       const packing::Orientation& orientation, model::ItemIndex without) {
   const skills::CellLayout& layout = scene.cell.layout;
   const skills::PlannedBox planned = scene.planned_box(box.item);
   const Pose X_WE_over{motion::upright_tool(layout.neutral_yaw), layout.X_WT.p};
@@ -24,7 +24,7 @@ std::optional<GraspOutline> outline_of(const Scene& scene, const StandingBox& bo
                         planned,
                         box.X_WP,
                         box.location,
-                        scene.packed_top(box.item),
+                        scene.packed_top(without),
                         1,
                         scene.cell.reaches},
                        orientation);
@@ -33,7 +33,7 @@ std::optional<GraspOutline> outline_of(const Scene& scene, const StandingBox& bo
 double cost_of(const Scene& scene, const StandingBox& box, const packing::Placement& placement) {
   if (!scene.cell.layout.is_fast || placement.flips == 0) return 0.0;
   const settings::RehearsalSettings& settings = scene.rules().rehearsal;
-  const auto outline = outline_of(scene, box, placement.orientation);
+  const auto outline = outline_of(scene, box, placement.orientation, box.item);
   const bool is_by_side = outline && outline->reorientation == skills::Reorientation::SideGrasp;
   return is_by_side ? settings.side_grasp_cost : settings.reorientation_cost;
 }

@@ -16,9 +16,10 @@ struct StandingBox {
   Location location = Location::Aligner;
 };
 
-/// How the grasp begins that is tried first; none: it cannot be picked so.
+/// How the grasp begins that is tried first; none: it cannot be picked so. The tool does not pass over the item
+/// `without`: the box itself, or one that stands where it will arrive.
 [[nodiscard]] std::optional<GraspOutline> outline_of(const Scene& scene, const StandingBox& box,
-                                                     const packing::Orientation& orientation);
+                                                     const packing::Orientation& orientation, model::ItemIndex without);
 /// Percent of the container that turning the box for a place costs; 0 of motions with a lag.
 [[nodiscard]] double cost_of(const Scene& scene, const StandingBox& box, const packing::Placement& placement);
 /// Percent filled in the end, on average, when this fraction of the worlds goes well and the others end with what is in

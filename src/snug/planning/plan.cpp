@@ -109,7 +109,7 @@ class Planner {
           work_.agent_for(belief_, next, budget_).decide_with_costs(state, belief_.items[next.slot()], cost);
       if (decision) {
         sort_by_utility(scene_, box, decision->candidates);
-        const auto outline = outline_of(scene_, box, decision->candidates.front().placement.orientation);
+        const auto outline = outline_of(scene_, box, decision->candidates.front().placement.orientation, plan_.item);
         if (outline) return outline->X_WE;
       }
     }

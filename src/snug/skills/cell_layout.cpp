@@ -15,6 +15,7 @@ namespace snug::skills {
 namespace {
 
 constexpr double kLevel = 1e-3;  ///< rad
+constexpr double kSag = 0.005;   ///< m, more than a box hangs below where it is planned to
 
 /// The bounds in W of a level box, shrunk to a rectangle that lies wholly on its upper face when it is turned about the
 /// vertical.
@@ -100,9 +101,13 @@ CellLayout make_layout(const model::Scenario& scenario, const std::optional<moti
   return layout;
 }
 
+double crossing_clearance(const CellLayout& layout) {
+  return layout.is_fast ? layout.travel.turning_clearance + kSag : layout.travel.clearance;
+}
+
 double travel_bottom(const CellLayout& layout, double packed_top) {
   const double rim = layout.X_WT.p.z() + std::max(layout.rim, packed_top);
-  return std::max(rim, layout.fixed_top) + layout.travel.clearance;
+  return std::max(rim, layout.fixed_top) + crossing_clearance(layout);
 }
 
 }  // namespace snug::skills

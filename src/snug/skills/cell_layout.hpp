@@ -31,6 +31,8 @@ struct CellLayout {
 /// Throws InputError for a scenario without aligner, tool or target container.
 [[nodiscard]] CellLayout make_layout(const model::Scenario& scenario, const std::optional<motion::PanAxis>& pan_axis);
 
+/// m, over what is crossed.
+[[nodiscard]] double crossing_clearance(const CellLayout& layout);
 /// z in W below which nothing passes that crosses the cell: over fixed things, rim and packed boxes.
 [[nodiscard]] double travel_bottom(const CellLayout& layout, double packed_top);
 

@@ -78,7 +78,7 @@ PickIntent pick_intent(const model::Scenario& scenario, const CellLayout& layout
   intent.approach_height =
       scenario.cup.free_length + (kind == PickKind::FromAbove
                                       ? top + params.above_box
-                                      : std::max(travel + params.above_travel, top + layout.travel.clearance));
+                                      : std::max(travel + params.above_travel, top + crossing_clearance(layout)));
   intent.lift_height = travel + height + scenario.cup.hold_length;
   return intent;
 }
@@ -289,7 +289,7 @@ std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, co
   for (int i = 0; i < kRaises; ++i) {
     Pose& X_WE_lifted = poses.X_WE_lifted;
     const Dip dip = find_dip(layout, X_WE_lifted, X_WP_over * X_EP.inverse(), X_EP, box.size,
-                             travel - layout.travel.clearance + layout.travel.turning_clearance);
+                             travel - crossing_clearance(layout) + layout.travel.turning_clearance);
     X_WE_lifted.p.z() += dip.depth / std::max(kLeastLever, 1.0 - dip.share);
   }
   rows.back().X_WE.p = poses.X_WE_lifted.p;
@@ -414,7 +414,7 @@ std::vector<motion::Waypoint> plan_place(const model::Scenario& scenario, const 
     intent.lip = scenario.cup.hold_length;
   }
   intent.entry_bottom = intent.X_WP.p.z() + lowest_corner(intent.X_WP.R, intent.size);  // straight down
-  const double least = intent.travel_bottom - layout.travel.clearance + layout.travel.turning_clearance;
+  const double least = intent.travel_bottom - crossing_clearance(layout) + layout.travel.turning_clearance;
   for (int i = 0; i < kRaises; ++i) {
     const Pose X_WE_over = tool_over_place(intent);
     const Dip dip = find_dip(layout, request.X_WE, X_WE_over, request.X_EP, intent.size, least);

@@ -154,6 +154,36 @@ TEST(PacedSegment, KeepsItsLimitsAndMeetsBothEnds) {
   }
 }
 
+/// m/s^2, the largest on the way.
+double fastest_change(const PacedSegment& segment) {
+  double most = 0.0, last = 0.0;
+  const double dt = 1e-3;
+  for (double t = dt; t <= segment.duration(); t += dt) {
+    const double speed = segment.sample(t).V_WE.linear.norm();
+    most = std::max(most, std::abs(speed - last) / dt);
+    last = speed;
+  }
+  return most;
+}
+
+TEST(PacedSegment, SpeedsUpFasterWhereTheAverageKeepsTheLimit) {
+  const Way way(Pose{}, Pose{Matrix3::Identity(), Vector3(0.0, 0.0, -0.5)});
+  const double speed = 0.6, limit = 4.0, window = 0.2, trapezoid = 0.5 / speed + 0.5 * speed / limit;
+  const auto part = 2.0 * 0.5 / (kPathParts * speed);  // the speed is reached at the end of a part
+  const PacedSegment averaged(way, {speed, limit, 1.0, 1.0, window, 0.0}, nullptr);
+  EXPECT_LE(averaged.duration(), trapezoid + window + part) << "0.6 m/s < 4 m/s2 * 0.2 s";
+  EXPECT_LE(fastest_change(averaged), limit * 1.001);
+  // Half of the motion later: only its first half speeds up faster, since its end may be in contact.
+  const PacedSegment shaped(way, {speed, limit, 1.0, 1.0, 0.1, 0.2}, nullptr);
+  const double both_ends = 0.5 / speed + speed / limit;
+  EXPECT_LE(shaped.duration(), both_ends - 0.25 * speed / limit + 0.1 + 0.2 + part);
+  EXPECT_LE(fastest_change(shaped), limit * 1.001);
+  // Too fast for either: as slow as the limit asks.
+  const PacedSegment plain(way, {speed, limit, 1.0, 1.0, 0.1, 0.0}, nullptr);
+  EXPECT_GE(plain.duration(), both_ends + 0.1 - 1e-9);
+  EXPECT_LE(fastest_change(plain), limit * 1.001);
+}
+
 TEST(PacedSegment, KeepsToWhatElseLimitsIt) {
   const Pose X_WB{Matrix3::Identity(), Vector3(1.0, 0.0, 0.0)};
   const Pace pace{2.0, 5.0, 2.0, 5.0, 0.1};

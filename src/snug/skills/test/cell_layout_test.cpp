@@ -139,8 +139,12 @@ TEST(TravelBottom, IsTheClearanceOverTheHighestOfFixedThingsRimAndPackedBoxes) {
     layout.rim = rng.uniform(0.0, 0.5);
     layout.fixed_top = rng.uniform(-1.0, 1.0);
     layout.travel.clearance = rng.uniform(0.0, 0.2);
+    layout.travel.turning_clearance = rng.uniform(0.0, 0.2);
+    layout.is_fast = i % 2 == 0;
     const double packed = rng.uniform(0.0, 1.0);
-    const double bottom = travel_bottom(layout, packed) - layout.travel.clearance;
+    const double bottom = travel_bottom(layout, packed) - crossing_clearance(layout);
+    EXPECT_EQ(crossing_clearance(layout),
+              i % 2 == 0 ? layout.travel.turning_clearance + 0.005 : layout.travel.clearance);
     const double tops[] = {layout.X_WT.p.z() + layout.rim, layout.X_WT.p.z() + packed, layout.fixed_top};
     EXPECT_NEAR(bottom, *std::ranges::max_element(tops), 1e-12);
   }

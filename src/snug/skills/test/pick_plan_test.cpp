@@ -68,8 +68,9 @@ TEST(PlanPick, ComesFromAsHighAsWhereTheToolIsNeeds) {
   const PlannedBox box = box_with(Vector3::Zero());
   for (const double z : {-0.058, 0.3}) {  // low, and higher than what is travelled over
     const Pose X_WP{Matrix3::Identity(), Vector3(-0.4, -0.3, z)};
+    CellLayout layout = layout_at(0.0);
     const auto lip = [&](PickKind kind) {
-      const auto rows = plan_pick(scenario, layout_at(0.0), box, X_WP, X_WP, kTravel, kind);
+      const auto rows = plan_pick(scenario, layout, box, X_WP, X_WP, kTravel, kind);
       EXPECT_EQ(motion::name_of(rows[1]), kind == PickKind::First ? "Box(BOX027)" : "RePick(BOX027)");
       return rows[0].X_WE.p.z() - scenario.cup.free_length;
     };
@@ -77,6 +78,8 @@ TEST(PlanPick, ComesFromAsHighAsWhereTheToolIsNeeds) {
     EXPECT_NEAR(lip(PickKind::First), std::max(kTravel + 0.020, top + 0.060), 1e-12);
     EXPECT_NEAR(lip(PickKind::FromAfar), std::max(kTravel + 0.020, top + 0.060), 1e-12);
     EXPECT_NEAR(lip(PickKind::FromAbove), top + 0.030, 1e-12);
+    layout.is_fast = true;
+    EXPECT_NEAR(lip(PickKind::First), std::max(kTravel + 0.020, top + 0.035), 1e-12);
   }
 }
 
