@@ -11,20 +11,22 @@
 #include "snug/core/parallel.hpp"
 #include "snug/core/rng.hpp"
 #include "snug/physics/world.hpp"
+#include "snug/runs/internal/film.hpp"
 
 namespace snug::runs {
 namespace {
 
-constexpr double kSettle = 0.5;           ///< s
-constexpr double kStep = 2.0;             ///< times the scenario's, unless it is said
-constexpr double kFilmStiffness = 2.0e3;  ///< N/m, a box
-constexpr double kFilmForce = 150.0;      ///< N, a box
-constexpr double kStrapForce = 600.0;     ///< N, all together
-constexpr double kFallen = 0.10;          ///< m, under the floor, or beyond the walls with the middle
-constexpr double kOnTop = 0.010;          ///< m, between a top and what stands on it
-constexpr double kTolerance = 1e-4;       ///< m/s, residual of contacts: it moves a box by 0.1 mm a second at most
-constexpr double kQuietTime = 0.020;      ///< s, below the speeds of sleep: then the load is at rest
-constexpr double kProbeTime = 0.010;      ///< s, for which a load at rest is tried under other forces
+constexpr double kSettle = 0.5;        ///< s
+constexpr double kStep = 2.0;          ///< times the scenario's, unless it is said
+constexpr double kWindTime = 2.0;      ///< s, in which the tension of film rises; then it stays for kSettle
+constexpr double kStrapForce = 600.0;  ///< N, all together
+constexpr double kFallen = 0.10;       ///< m, under the floor, or beyond the walls with the middle
+constexpr double kOnTop = 0.010;       ///< m, between a top and what stands on it
+constexpr double kTolerance = 1e-4;    ///< m/s, residual of contacts: it moves a box by 0.1 mm a second at most
+constexpr double kQuietTime = 0.020;   ///< s, below the speeds of sleep: then the load is at rest
+constexpr double kProbeTime = 0.010;   ///< s, for which a load at rest is tried under other forces
+// EUMOS 40509: what may remain of a shift, m; in the lowest part of the load less.
+constexpr double kLowest = 0.2, kLowestRemaining = 0.04, kMostRemaining = 0.06;
 /// Of the limits. A load that moves no farther with the least friction is not run with more: such motions of 14 loads
 /// moved no more there (docs/decisions/0130).
 constexpr double kStill = 0.25;
@@ -58,6 +60,28 @@ cell::WorldOptions world_options(const model::Scenario& scenario) {
   return options;
 }
 
+struct Allowed {
+  double shift = 0.0;             ///< m, at any time
+  std::vector<double> remaining;  ///< m, in the end, box by box
+};
+
+Allowed allowed_of(const model::Scenario& scenario, const std::vector<model::PlacementEntry>& load,
+                   const ShakeOptions& options) {
+  Allowed allowed{options.shift, std::vector<double>(load.size(), std::numeric_limits<double>::infinity())};
+  if (options.limits == ShakeLimits::Boxes) return allowed;
+  double height = 0.0;
+  for (const model::PlacementEntry& one : load) {
+    const Vector3 size = model::collision_size(scenario, *model::find_parcel(scenario, one.parcel));
+    height = std::max(height, one.X_TP.p.z() + 0.5 * one.X_TP.R.row(2).cwiseAbs().dot(size));
+  }
+  allowed.shift = 0.10 * height;
+  for (std::size_t i = 0; i < load.size(); ++i) {
+    const double most = load[i].X_TP.p.z() < kLowest ? kLowestRemaining : kMostRemaining;
+    allowed.remaining[i] = std::min(most, 0.05 * height);
+  }
+  return allowed;
+}
+
 struct Extents {
   Vector3 low, high;
 };
@@ -71,11 +95,14 @@ class Truck {
  public:
   Truck(const model::Scenario& scenario, const std::vector<model::PlacementEntry>& load, const ShakeOptions& options)
       : options_(options),
+        allowed_(allowed_of(scenario, load, options)),
         world_(cell::build_world(scenario, world_options(scenario))),
         work_(world_.model),
         X_WT_(model::find_container(scenario, scenario.target)->X_WT),
         inner_(model::find_container(scenario, scenario.target)->inner_size),
-        state_(cell::make_initial_state(scenario, world_)) {
+        state_(cell::make_initial_state(scenario, world_)),
+        film_(boxes_of(scenario, load)),
+        rested_film_(film_) {
     for (std::size_t i = 0; i < load.size(); ++i) {
       physics::set_present(state_, world_.parcels[i], true);
       physics::set_pose(world_.model, state_, world_.parcels[i], X_WT_ * load[i].X_TP);
@@ -84,22 +111,49 @@ class Truck {
     find_tops(scenario, load);
   }
 
-  /// The run of what stands by itself; what the motions begin with.
-  ShakeRun settle() {
+  /// What stands by itself, then what the film makes of it; what the motions begin with.
+  std::vector<ShakeRun> settle() {
     reference_ = poses();
-    ShakeRun run = drive({"at rest", {{0.0, Vector3::Zero()}, {kSettle, Vector3::Zero()}}});
+    std::vector<ShakeRun> runs{drive({"at rest", {{0.0, Vector3::Zero()}, {kSettle, Vector3::Zero()}}})};
+    if (options_.hold == LoadHold::Film) runs.push_back(wind());
     reference_ = poses();
     rested_ = state_;
+    rested_film_ = film_;
     rested_steps_ = quiet_steps_;
-    return run;
+    return runs;
   }
   ShakeRun shake(const ShakeMotion& motion) {
     state_ = rested_;
+    film_ = rested_film_;
     quiet_steps_ = rested_steps_;
     return drive(motion);
   }
 
  private:
+  enum class FilmState { Off, Winding, Wound };
+
+  static std::vector<internal::FilmBox> boxes_of(const model::Scenario& scenario,
+                                                 const std::vector<model::PlacementEntry>& load) {
+    std::vector<internal::FilmBox> boxes;
+    for (const model::PlacementEntry& one : load) {
+      const model::Parcel& parcel = *model::find_parcel(scenario, one.parcel);
+      boxes.push_back({model::collision_size(scenario, parcel), parcel.inertia.com});
+    }
+    return boxes;
+  }
+
+  /// The film draws a loose load together before anything drives it: how far does not count.
+  ShakeRun wind() {
+    reference_ = poses();
+    film_state_ = FilmState::Winding;
+    counts_shift_ = false;
+    ShakeRun run = drive({"wound", {{0.0, Vector3::Zero()}, {kWindTime + kSettle, Vector3::Zero()}}});
+    counts_shift_ = true;
+    film_state_ = FilmState::Wound;
+    film_.wrap(poses());
+    return run;
+  }
+
   [[nodiscard]] std::vector<Pose> poses() const {
     std::vector<Pose> poses;
     for (const physics::BodyId body : world_.parcels) {
@@ -129,22 +183,31 @@ class Truck {
     const Vector3 gravity_T = X_WT_.R.transpose() * world_.model.gravity;
     const Vector3 felt_T = R_tilt.transpose() * gravity_T - gravity_T - now.acceleration_T;
     const auto tops = static_cast<double>(std::ranges::count(is_top_, true));
+    pull_film(now.time);
     wrenches_.clear();
     for (std::size_t i = 0; i < world_.parcels.size(); ++i) {
       const physics::BodyId body = world_.parcels[i];
       if (!state_.bodies[static_cast<std::size_t>(body.index)].is_present) continue;
       Vector3 force_T = world_.model.bodies[static_cast<std::size_t>(body.index)].inertia.mass * felt_T;
-      if (options_.hold == LoadHold::Film) {
-        // In the middle of the step: a pull that lags by half a step would feed what sways.
-        Pose X_WP = physics::pose_of(world_.model, state_, body);
-        X_WP.p += 0.5 * world_.model.settings.dt * state_.bodies[static_cast<std::size_t>(body.index)].velocity;
-        Vector3 back = reference_[i].p - (X_WT_.inverse() * X_WP).p;
-        back.z() = 0.0;
-        const double pull = std::min(kFilmForce, kFilmStiffness * back.norm());
-        if (back.norm() > 1e-9) force_T += pull * back.normalized();
-      }
       if (options_.hold == LoadHold::Straps && is_top_[i]) force_T.z() -= kStrapForce / tops;
-      wrenches_.push_back({body, {X_WT_.R * force_T, Vector3::Zero()}});
+      force_T += film_T_[i].force;
+      wrenches_.push_back({body, {X_WT_.R * force_T, X_WT_.R * film_T_[i].torque}});
+    }
+  }
+
+  /// By the poses in the middle of the step: a pull that lags by half a step would feed what sways.
+  void pull_film(double time) {
+    film_T_.assign(world_.parcels.size(), {});
+    if (film_state_ == FilmState::Off) return;
+    std::vector<Pose> X_TP = poses();
+    for (std::size_t i = 0; i < X_TP.size(); ++i) {
+      const physics::BodyState& body = state_.bodies[static_cast<std::size_t>(world_.parcels[i].index)];
+      X_TP[i].p += 0.5 * world_.model.settings.dt * (X_WT_.R.transpose() * body.velocity);
+    }
+    if (film_state_ == FilmState::Winding) {
+      film_.wind(X_TP, std::min(1.0, time / kWindTime), film_T_);
+    } else {
+      film_.pull(X_TP, film_T_);
     }
   }
 
@@ -198,14 +261,14 @@ class Truck {
   ShakeRun drive(const ShakeMotion& motion) {
     ShakeRun run;
     run.motion = motion.name;
-    for (const std::string& id : ids_) run.boxes.push_back({id, 0.0, 0.0, 0.0, false});
+    for (const std::string& id : ids_) run.boxes.push_back({.id = id});
     run.worst_X_TP = poses();
     const double dt = world_.model.settings.dt;
     const auto steps = static_cast<std::int64_t>(std::ceil(motion.duration() / dt));
     const std::int64_t steps_before = steps_;
     tried_ = -1.0;
     for (std::int64_t k = 0; k < steps; ++k) {
-      if (is_at_rest()) k = skip_rest(motion, k, steps);
+      if (film_state_ != FilmState::Winding && is_at_rest()) k = skip_rest(motion, k, steps);
       if (k == steps) break;
       if (!advance(motion.at((static_cast<double>(k) + 0.5) * dt))) {
         run.is_sound = false;
@@ -216,9 +279,24 @@ class Truck {
       measure(static_cast<double>(k + 1) * dt, run);
     }
     run.steps = steps_ - steps_before;
-    const std::vector<Pose> now = poses();
-    for (std::size_t i = 0; i < now.size(); ++i) run.boxes[i].remaining = (now[i].p - reference_[i].p).norm();
+    judge_end(motion.duration(), run);
     return run;
+  }
+
+  void judge_end(double time, ShakeRun& run) const {
+    const std::vector<Pose> now = poses();
+    double worst = 0.0;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      ShakenBox& box = run.boxes[i];
+      box.remaining = (now[i].p - reference_[i].p).norm();
+      if (!counts_shift_ || box.fell) continue;
+      box.part = std::max(box.part, box.remaining / allowed_.remaining[i]);
+      worst = std::max(worst, box.part);
+    }
+    if (worst <= run.worst) return;
+    run.worst = worst;
+    run.worst_time = time;
+    run.worst_X_TP = now;
   }
 
   void measure(double time, ShakeRun& run) {
@@ -235,7 +313,8 @@ class Truck {
       box.fell = X_TP.p.z() < -kFallen || std::abs(X_TP.p.x()) > 0.5 * inner_.x() + kFallen ||
                  std::abs(X_TP.p.y()) > 0.5 * inner_.y() + kFallen;
       if (box.fell) fallen.push_back(i);
-      worst = std::max({worst, shift / options_.shift, tilt / options_.tilt});
+      box.part = std::max({box.part, counts_shift_ ? shift / allowed_.shift : 0.0, tilt / options_.tilt});
+      worst = std::max(worst, box.part);
     }
     if (!fallen.empty()) worst = std::numeric_limits<double>::infinity();
     if (worst > run.worst) {
@@ -243,7 +322,10 @@ class Truck {
       run.worst_time = time;
       run.worst_X_TP = poses();
     }
-    for (const std::size_t i : fallen) physics::set_present(state_, world_.parcels[i], false);
+    for (const std::size_t i : fallen) {
+      physics::set_present(state_, world_.parcels[i], false);
+      film_.leave_out(i);
+    }
   }
 
   /// rad, how far the container's vertical moved in the box: turning about it does not count.
@@ -253,11 +335,16 @@ class Truck {
   }
 
   const ShakeOptions& options_;
+  Allowed allowed_;
   cell::CellWorld world_;
   physics::Workspace work_;
   Pose X_WT_;
   Vector3 inner_;
   physics::WorldState state_, rested_;
+  internal::Film film_, rested_film_;
+  FilmState film_state_ = FilmState::Off;
+  bool counts_shift_ = true;  ///< false: of a motion that moves the load on purpose
+  std::vector<Wrench> film_T_;
   std::vector<std::string> ids_;
   std::vector<bool> is_top_;
   std::vector<Pose> reference_;
@@ -287,15 +374,19 @@ void check(const model::Scenario& scenario, const std::vector<model::PlacementEn
 /// Whether more friction cannot make a motion worse: a box fell, or the load hardly moved.
 bool is_decided(const ShakeRun& least) { return std::isinf(least.worst) || least.worst <= kStill; }
 
+/// At rest, and wound.
+std::size_t steps_before_motions(const ShakeOptions& options) { return options.hold == LoadHold::Film ? 2 : 1; }
+
 /// With one friction: the load at rest and those motions that are wanted. What is not wanted is absent.
 std::vector<std::optional<ShakeRun>> run_motions(const model::Scenario& scenario,
                                                  const std::vector<model::PlacementEntry>& load,
                                                  const std::vector<ShakeMotion>& profile, const ShakeOptions& options,
                                                  const std::vector<bool>& is_wanted) {
   Truck truck(scenario, load, options);
-  std::vector<std::optional<ShakeRun>> runs{truck.settle()};
-  for (std::size_t i = 0; i < profile.size(); ++i) {
-    runs.push_back(is_wanted[i + 1] ? std::optional(truck.shake(profile[i])) : std::nullopt);
+  std::vector<std::optional<ShakeRun>> runs;
+  for (ShakeRun& run : truck.settle()) runs.emplace_back(std::move(run));
+  for (const ShakeMotion& motion : profile) {
+    runs.push_back(is_wanted[runs.size()] ? std::optional(truck.shake(motion)) : std::nullopt);
   }
   return runs;
 }
@@ -308,7 +399,7 @@ std::vector<std::vector<std::optional<ShakeRun>>> run_frictions(const model::Sce
                                                                 const ShakeOptions& options,
                                                                 const std::vector<double>& frictions) {
   std::vector<std::vector<std::optional<ShakeRun>>> runs(frictions.size());
-  std::vector<bool> is_wanted(profile.size() + 1, true);
+  std::vector<bool> is_wanted(profile.size() + steps_before_motions(options), true);
   const auto run = [&](std::size_t draw) {
     runs[draw] =
         run_motions(travelling(scenario, load, frictions[draw], options.time_step), load, profile, options, is_wanted);
@@ -325,6 +416,8 @@ std::vector<std::vector<std::optional<ShakeRun>>> run_frictions(const model::Sce
 }
 
 }  // namespace
+
+const char* name_of(ShakeLimits limits) { return limits == ShakeLimits::Boxes ? "boxes" : "eumos40509"; }
 
 const char* name_of(LoadHold hold) {
   switch (hold) {
@@ -352,11 +445,15 @@ ShakeResult shake(const model::Scenario& scenario, const std::vector<model::Plac
     result.boxes.push_back(one.parcel);
     result.sizes.push_back(model::collision_size(scenario, *model::find_parcel(scenario, one.parcel)));
   }
+  const Allowed allowed = allowed_of(scenario, load, options);
+  result.shift = allowed.shift;
+  result.remaining = *std::ranges::max_element(allowed.remaining);
   auto runs = run_frictions(scenario, load, profile, options, frictions);
-  for (std::size_t m = 0; m <= profile.size(); ++m) {
+  const std::size_t first = steps_before_motions(options);
+  for (std::size_t m = 0; m < profile.size() + first; ++m) {
     for (std::vector<std::optional<ShakeRun>>& own : runs) {
       if (m >= own.size() || !own[m]) continue;
-      result.seconds += m == 0 ? kSettle : profile[m - 1].duration();
+      result.seconds += m == 0 ? kSettle : m < first ? kWindTime + kSettle : profile[m - first].duration();
       result.runs.push_back(std::move(*own[m]));
     }
   }

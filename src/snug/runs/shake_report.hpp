@@ -20,8 +20,7 @@ struct RecordedLoad {
 /// What was asked, as people say it.
 struct ShakeWords {
   std::string load, profile, hold;
-  double shift_mm = 20.0;  ///< allowed
-  double tilt_deg = 6.0;   ///< allowed
+  double tilt_deg = 6.0;  ///< allowed
 };
 
 /// One sentence.

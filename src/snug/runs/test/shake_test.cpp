@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "snug/core/input_error.hpp"
@@ -104,9 +105,44 @@ TEST(Shake, FilmWithoutFrictionSwaysAsFarAsASpringDoes) {
   options.time_step = 0.002;
   const ShakeMotion motion{"push", {{0.0, Vector3::Zero()}, {0.002, {0.5, 0.0, 0.0}}, {4.0, {0.5, 0.0, 0.0}}}};
   const ShakeRun run = shake(pallet(0.0, size), in_the_middle(size), {motion}, options).runs.back();
-  // 2 m a / k = 1 mm; a pull that lags makes 4 mm of it in 4 s. What this step adds is of third order: below
-  // 1 %.
-  EXPECT_NEAR(run.boxes[0].shift, 2.0 * 2.0 * 0.5 / 2000.0, 1e-5);
+  // One band, in shear against the pallet over half of its height: two sides of 0.4 m, 2.2 kN/m. A pull that lags would
+  // make far more than 2 m a / k of it in 4 s.
+  const double stiffness = 2.0 * 0.4 * 2.2e3 / 0.05;
+  EXPECT_NEAR(run.boxes[0].shift, 2.0 * 2.0 * 0.5 / stiffness, 1e-6);
+}
+
+TEST(Shake, FilmDrawsALoadTogetherBeforeItIsDriven) {
+  const Vector3 size(0.4, 0.4, 0.1);
+  const std::vector<model::PlacementEntry> load{{"A", {Matrix3::Identity(), Vector3(-0.215, 0.0, 0.05)}, 0},
+                                                {"B", {Matrix3::Identity(), Vector3(0.215, 0.0, 0.05)}, 0}};
+  ShakeOptions options = exact();
+  options.hold = LoadHold::Film;
+  const ShakeResult result = shake(pallet(0.3, size), load, pulse({1.0, 0.0, 0.0}), options);
+  ASSERT_EQ(result.runs.size(), 3U);
+  EXPECT_EQ(result.runs[1].motion, "wound");
+  // 2 x 35 N against 5.9 N of friction: the gap of 30 mm closes. That shift does not count.
+  EXPECT_NEAR(result.runs[1].boxes[0].remaining + result.runs[1].boxes[1].remaining, 0.030, 5e-4);
+  EXPECT_LT(result.runs[1].worst, 0.1);
+  EXPECT_TRUE(result.holds());
+  EXPECT_LT(result.runs[2].boxes[0].shift, 1e-3) << "from where the film has drawn it";
+}
+
+TEST(Shake, JudgesByTheHeightOfALoadAsEumos40509Does) {
+  const Vector3 size(0.4, 0.4, 0.5);
+  const model::Scenario scenario = pallet(0.3, size);
+  // mu g for the time at which it slides by 18 mm and 32 mm: 5 % of 0.5 m are 25 mm, 10 % are 50 mm.
+  for (const double way : {0.018, 0.032}) {
+    const double time = std::sqrt(2.0 * way / (0.1 * 9.81));
+    const std::vector<ShakeMotion> motion{
+        {"slides", {{0.0, Vector3::Zero()}, {0.001, {0.4 * 9.81, 0.0, 0.0}}, {time, {0.4 * 9.81, 0.0, 0.0}}}}};
+    ShakeOptions options = exact();
+    options.limits = ShakeLimits::Eumos40509;
+    const ShakeResult result = shake(scenario, in_the_middle(size), motion, options);
+    EXPECT_NEAR(result.shift, 0.05, 1e-12);
+    EXPECT_NEAR(result.remaining, 0.025, 1e-12);
+    EXPECT_NEAR(result.runs.back().worst, way / 0.025, 0.05);
+    EXPECT_EQ(result.holds(), way < 0.025);
+  }
 }
 
 TEST(Shake, SaysOfALoadThatDoesNotStandThatItFellAtRest) {
@@ -219,11 +255,14 @@ TEST(ShakeReport, NamesTheWorstBoxOfAMotionAndWhatEachLimitWas) {
   result.boxes = {"A", "B"};
   result.sizes = {Vector3::Constant(0.1), Vector3::Constant(0.1)};
   result.inner_size = Vector3(0.6, 0.4, 0.3);
+  result.shift = 0.020;
+  result.remaining = std::numeric_limits<double>::infinity();
   const std::vector<Pose> poses(2);
-  result.runs = {{"stop", 1.0, {{"A", 0.001, 0.0, 0.0, false}, {"B", 0.030, 0.02, 0.01, false}}, 1.5, 0.2, poses, true},
-                 {"stop", 0.8, {{"A", 0.050, 0.05, 0.0, false}, {"B", 0.0, 0.0, 0.0, true}}, 9.0, 0.4, poses, true}};
+  result.runs = {
+      {"stop", 1.0, {{"A", 0.001, 0.0, 0.0, false}, {"B", 0.030, 0.02, 0.01, false, 1.5}}, 1.5, 0.2, poses, true},
+      {"stop", 0.8, {{"A", 0.050, 0.05, 0.0, false, 2.5}, {"B", 0.0, 0.0, 0.0, true}}, 9.0, 0.4, poses, true}};
   result.worst = 1;
-  const ShakeWords words{"load.yaml", "conveyor", "none", 20.0, 6.0};
+  const ShakeWords words{"load.yaml", "conveyor", "none", 6.0};
   EXPECT_EQ(shake_verdict(result, words),
             "does not hold: 2 of 2 boxes beyond 20 mm or 6 degrees in 'stop', friction x 0.80; worst B (falls)");
   const std::string text = format_shake_text(result, words);
@@ -232,6 +271,9 @@ TEST(ShakeReport, NamesTheWorstBoxOfAMotionAndWhatEachLimitWas) {
   EXPECT_NE(format_shake_page(result, words).find("friction x 0.80"), std::string::npos);
   result.runs.clear();
   EXPECT_EQ(shake_verdict(result, words), "holds: 2 boxes within 20 mm and 6 degrees");
+  result.shift = 0.1795;
+  result.remaining = 0.060;
+  EXPECT_EQ(shake_verdict(result, words), "holds: 2 boxes within 179.5 mm (60 mm in the end) and 6 degrees");
 }
 
 }  // namespace
