@@ -102,7 +102,7 @@ std::vector<Policy> policies_for(const Planning& planning, std::span<const Item>
   std::vector<Policy> policies(2, make_policy(planning, kinds));
   const bool is_grid = planning.has_walls && are_of_a_grid(planning, kinds);
   policies.back().weights = is_grid ? grid_weights() : contact_weights();
-  if (!planning.has_walls) policies.back().weights = from_below(policies.back().weights);
+  if (!planning.has_walls) policies.back().weights = for_pallets(policies.back().weights);
   return policies;
 }
 
@@ -341,9 +341,15 @@ class ContactAwareAgent : public Agent {
 }  // namespace
 
 Planning plan_for_contact(const ContainerState& state, const PackingSettings& settings) {
-  // What is planned to press between walls would stick out beyond the edge of a pallet.
-  return {state.inner_size, settings, settings.max_flips, 0.0, state.has_walls ? settings.planned_interference : 0.0,
-          state.has_walls};
+  Planning planning{state.inner_size, settings, settings.max_flips, 0.0, settings.planned_interference,
+                    state.has_walls};
+  if (state.has_walls) return planning;
+  // What is planned to press between walls would stick out beyond the edge of a pallet. And no wall stops a column that
+  // leans because its boxes hang over: on soft faces each of them turns what stands on it.
+  constexpr double kLeastSupport = 0.75;
+  planning.planned_interference = 0.0;
+  planning.settings.min_support = std::max(settings.min_support, kLeastSupport);
+  return planning;
 }
 
 std::int64_t work_for(double seconds) { return static_cast<std::int64_t>(seconds * kPlacesPerSecond); }
@@ -369,7 +375,7 @@ Policy make_policy(const Planning& planning, std::span<const Item> kinds) {
     }
   }
   const int longest = to_ticks(planning.inner_size.head<2>().maxCoeff());
-  const Weights weights = planning.has_walls ? default_weights() : from_below(default_weights());
+  const Weights weights = planning.has_walls ? default_weights() : for_pallets(default_weights());
   return {weights, WasteTable(along, longest), WasteTable(up, to_ticks(planning.inner_size.z()))};
 }
 

@@ -64,6 +64,7 @@ Rules make_rules(const Planning& planning, std::span<const Item> kinds) {
   rules.min_support = s.min_support;
   rules.com_margin = to_ticks(s.com_margin);
   rules.level_slack = to_ticks(s.level_slack);
+  rules.has_walls = planning.has_walls;
   int smallest = std::numeric_limits<int>::max();
   for (const Item& kind : kinds)
     smallest = std::min(smallest, to_ticks(kind.size.minCoeff() - planning.planned_interference));

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <utility>
 
 namespace snug::packing::internal {
@@ -18,6 +20,12 @@ bool contains(const Rectangle& outer, const Rectangle& inner) {
 }
 
 Rectangle footprint(const Block& b) { return {b.x1, b.y1, b.x2, b.y2}; }
+
+Rectangle around(const Rectangle& a, const Rectangle& b) {
+  return {std::min(a.x1, b.x1), std::min(a.y1, b.y1), std::max(a.x2, b.x2), std::max(a.y2, b.y2)};
+}
+
+Vector3 middle_of(const Block& b) { return {0.5 * (b.x1 + b.x2), 0.5 * (b.y1 + b.y2), 0.5 * (b.z1 + b.z2)}; }
 
 /// ticks^2: 21.5 m^2 would not fit into 31 bits.
 std::int64_t shared_area(const Rectangle& a, const Block& b) {
@@ -108,6 +116,14 @@ void Layout::add(const Block& block) {
   }
   const double area = static_cast<double>(face.x2 - face.x1) * (face.y2 - face.y1);
   columns_.push_back(std::max(0.0, block.z2 - below / area));
+  if (!rules_.has_walls) {
+    const Bearing bearing = bearing_of(block);
+    go_down(bearing, bearing.mass, middle_of(block), [this](int index, double mass, const Vector3& place) {
+      bearings_[static_cast<std::size_t>(index)].mass += mass;
+      bearings_[static_cast<std::size_t>(index)].first_moment += mass * place;
+    });
+    bearings_.push_back(bearing);
+  }
   blocks_.push_back(block);
   has_obstacles_ |= block.is_obstacle;
   table_.add(face, block.z2);
@@ -130,6 +146,66 @@ void Layout::add(const Block& block) {
     }
   }
   if (std::find(levels_.begin(), levels_.end(), level) == levels_.end()) open_level(level);
+}
+
+Bearing Layout::bearing_of(const Block& block) const {
+  const Rectangle face = footprint(block);
+  Bearing bearing;
+  bearing.face = face;
+  bearing.mass = block.mass;
+  bearing.first_moment = bearing.mass * middle_of(block);
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    const Block& below = blocks_[i];
+    if (below.z2 > block.z1 || block.z1 - below.z2 > rules_.level_slack) continue;
+    const auto area = static_cast<double>(shared_area(face, below));
+    if (area <= 0.0) continue;
+    const Rectangle shared{std::max(face.x1, below.x1), std::max(face.y1, below.y1), std::min(face.x2, below.x2),
+                           std::min(face.y2, below.y2)};
+    bearing.face = bearing.count == 0 ? shared : around(bearing.face, shared);
+    std::size_t at = std::min(bearing.count, Bearing::kMost - 1);
+    if (bearing.count == Bearing::kMost) {
+      at = static_cast<std::size_t>(std::ranges::min_element(bearing.part) - bearing.part.begin());
+      if (bearing.part[at] >= area) continue;
+    } else {
+      ++bearing.count;
+    }
+    bearing.below[at] = static_cast<int>(i);
+    bearing.part[at] = area;
+    bearing.at[at] = Vector3(0.5 * (shared.x1 + shared.x2), 0.5 * (shared.y1 + shared.y2), 0.0);
+  }
+  const double total = std::accumulate(bearing.part.begin(), bearing.part.end(), 0.0);
+  for (double& part : bearing.part) part /= std::max(1.0, total);
+  return bearing;
+}
+
+template <class Visit>
+void Layout::go_down(const Bearing& bearing, double mass, const Vector3& place, const Visit& visit) const {
+  for (std::size_t i = 0; i < bearing.count; ++i) {
+    const Vector3 through = bearing.count == 1 ? place : Vector3(bearing.at[i].x(), bearing.at[i].y(), place.z());
+    const double part = bearing.part[i] * mass;
+    visit(bearing.below[i], part, through);
+    go_down(bearings_[static_cast<std::size_t>(bearing.below[i])], part, through, visit);
+  }
+}
+
+std::array<double, 4> Layout::tipping_of(const Block& block) const {
+  std::array<double, 4> least;
+  least.fill(std::numeric_limits<double>::infinity());
+  const auto judge = [&least](const Rectangle& face, int bottom, double mass, const Vector3& first_moment) {
+    const Vector3 com = first_moment / mass;
+    const double height = std::max(1.0, com.z() - bottom);
+    const std::array<double, 4> lever{com.x() - face.x1, face.x2 - com.x(), com.y() - face.y1, face.y2 - com.y()};
+    for (std::size_t side = 0; side < 4; ++side) least[side] = std::min(least[side], lever[side] / height);
+  };
+  const Bearing bearing = bearing_of(block);
+  const double own = std::max(1.0, bearing.mass);
+  judge(bearing.face, block.z1, own, own * middle_of(block));
+  go_down(bearing, own, middle_of(block), [&](int index, double mass, const Vector3& place) {
+    const Bearing& below = bearings_[static_cast<std::size_t>(index)];
+    judge(below.face, blocks_[static_cast<std::size_t>(index)].z1, below.mass + mass,
+          below.first_moment + mass * place);
+  });
+  return least;
 }
 
 void Layout::cut(std::vector<Rectangle>& areas, const Rectangle& hole) {

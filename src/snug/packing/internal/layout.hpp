@@ -1,10 +1,12 @@
 // Layout: exact boxes in a container as integers, and every corner into which the next one can be lowered.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "snug/packing/internal/block_table.hpp"
+#include "snug/spatial/pose.hpp"
 
 namespace snug::packing::internal {
 
@@ -47,6 +49,7 @@ struct Rules {
   int level_slack = 30;  ///< tops that differ by less carry a box together
   int min_side = 0;      ///< narrower spaces are of no use
   int min_height = 0;
+  bool has_walls = true;  ///< false: a pallet; of every block it is kept what it stands on
   bool operator==(const Rules&) const = default;
 };
 
@@ -56,6 +59,19 @@ struct CandidatePose {
   int orientation = 0;   ///< index
   double support = 0.0;  ///< part of the lower face
   bool operator==(const CandidatePose&) const = default;
+};
+
+/// What one block rests on, and what rests on that: its own weight and what it carries. Loads go down to the blocks
+/// below in proportion to the areas that they share; one that stands on a single block passes all of it straight down.
+struct Bearing {
+  static constexpr std::size_t kMost = 4;  ///< blocks below that are kept, those with most of the area
+  Rectangle face;                          ///< around what it shares with the blocks below; on the floor its own face
+  double mass = 0.0;                       ///< g
+  Vector3 first_moment = Vector3::Zero();  ///< g times ticks
+  std::array<int, kMost> below{};          ///< indices
+  std::array<double, kMost> part{};        ///< of the load that each of them takes
+  std::array<Vector3, kMost> at{};         ///< middles of what is shared with each, ticks
+  std::size_t count = 0;                   ///< of them; 0 on the floor
 };
 
 enum class Refusal { None, Outside, Height, Support, Balance, Load };
@@ -98,6 +114,10 @@ class Layout {
   /// Mean height under the top of each block that is filled or lost and not under a block below it, ticks; parallel to
   /// blocks(): what a footprint covers of each, added up, is what is filled under it.
   [[nodiscard]] const std::vector<double>& columns() const { return columns_; }
+  /// Level acceleration as a part of g, along -x, +x, -y, +y, from which a block, put there, or something below it
+  /// would tip if nothing beside it held it: the least of lever over height of all faces through which its weight goes
+  /// down. For layouts without walls.
+  [[nodiscard]] std::array<double, 4> tipping_of(const Block& block) const;
 
  private:
   struct Space {
@@ -114,12 +134,17 @@ class Layout {
   [[nodiscard]] bool carries(const Rectangle& face, int base, int mass) const;
   [[nodiscard]] bool rests_on_obstacle(const Rectangle& face, int base) const;
   void add_load(std::size_t upper, double mass);
+  [[nodiscard]] Bearing bearing_of(const Block& block) const;
+  /// Calls visit(index, mass, place) for every block on which a part of a load rests that goes through `bearing`.
+  template <class Visit>
+  void go_down(const Bearing& bearing, double mass, const Vector3& place, const Visit& visit) const;
 
   Rules rules_;
   std::vector<Block> blocks_;
   BlockTable table_;  ///< the same by coordinate
   std::vector<double> columns_;
-  std::vector<double> loads_;  ///< g on each block; kept only when a block has a limit
+  std::vector<double> loads_;      ///< g on each block; kept only when a block has a limit
+  std::vector<Bearing> bearings_;  ///< of each block; kept only without walls
   bool has_limits_ = false;
   bool has_obstacles_ = false;
   std::vector<Space> spaces_;

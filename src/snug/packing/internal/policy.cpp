@@ -36,6 +36,34 @@ BlockTable::Beside look_beside(const Layout& layout, const Block& me) {
   return s;
 }
 
+/// Sides at which a block touches `me` at the height of its middle: low x, high x, low y, high y.
+std::array<bool, 4> find_held_sides(const Layout& layout, const Block& me) {
+  std::array<bool, 4> held{};
+  const int middle = (me.z1 + me.z2) / 2;
+  for (const Block& b : layout.blocks()) {
+    if (b.z2 < middle || b.z1 > middle) continue;
+    const int ox = std::min(me.x2, b.x2) - std::max(me.x1, b.x1);
+    const int oy = std::min(me.y2, b.y2) - std::max(me.y1, b.y1);
+    if (oy > 0 && ox <= 0 && -ox <= kTouch) held[b.x1 < me.x1 ? 0 : 1] = true;
+    if (ox > 0 && oy <= 0 && -oy <= kTouch) held[b.y1 < me.y1 ? 2 : 3] = true;
+  }
+  return held;
+}
+
+/// Over the four directions: by what part it tips earlier than at kLeastTipping. Half of it where a neighbour holds it:
+/// what a neighbour is pressed with it has to bear itself.
+double see_tipping(const Layout& layout, const Block& me) {
+  constexpr double kLeastTipping = 0.3;  // g
+  constexpr double kHeld = 0.5;
+  const std::array<double, 4> tipping = layout.tipping_of(me);
+  const std::array<bool, 4> held = find_held_sides(layout, me);
+  double sum = 0.0;
+  for (std::size_t side = 0; side < 4; ++side) {
+    sum += (held[side] ? kHeld : 1.0) * std::max(0.0, 1.0 - tipping[side] / kLeastTipping);
+  }
+  return sum;
+}
+
 }  // namespace
 
 Weights default_weights() {
@@ -72,10 +100,10 @@ Weights contact_weights() {
   return w;
 }
 
-Weights from_below(Weights weights) {
+Weights for_pallets(Weights weights) {
   // A tenth of the height counts as much as a face that touches all round; a few millimetres of unevenness do not.
-  constexpr double kWeightOfBase = 10.0;
-  weights[Base] += kWeightOfBase;
+  weights[Base] += 10.0;
+  weights[Tipping] += 3.0;
   return weights;
 }
 
@@ -126,6 +154,7 @@ Features see(const Layout& layout, const Policy& policy, const Piece& piece, con
   f[Footprint] = 10.0 * area / (static_cast<double>(rules.size_x) * rules.size_y);
   f[Touch] = (contact + pose.support * area) / (2.0 * (area + (width + depth) * height));
   for (const int gap : s.gap) f[Sliver] += gap > kTouch && gap < rules.min_side ? 1.0 : 0.0;
+  if (!rules.has_walls) f[Tipping] = see_tipping(layout, me);
   return f;
 }
 

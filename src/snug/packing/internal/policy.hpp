@@ -21,6 +21,7 @@ enum Feature {
   Footprint,
   Sliver,
   Touch,
+  Tipping,  ///< of a pallet: how easily it tips, or what it stands on with it
   kFeatureCount
 };
 using Features = std::array<double, kFeatureCount>;
@@ -33,8 +34,9 @@ using Weights = std::array<double, kFeatureCount>;
 [[nodiscard]] Weights grid_weights();
 /// Maximal contact: as much of the whole surface as can be touches boxes, floor and walls; of equals the lowest.
 [[nodiscard]] Weights contact_weights();
-/// The same for a container without walls: of two places the lower one. Nothing holds a column that stands by itself.
-[[nodiscard]] Weights from_below(Weights weights);
+/// The same for a container without walls, where nothing holds a column that stands by itself: of two places the lower
+/// one, and what tips easily costs.
+[[nodiscard]] Weights for_pallets(Weights weights);
 
 /// What is left of a length when it is filled as well as sums of these lengths can: one entry a millimetre.
 class WasteTable {

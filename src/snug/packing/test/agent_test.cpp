@@ -115,6 +115,23 @@ TEST(ContactAwareAgent, FillsAPalletLayerByLayer) {
   }
 }
 
+TEST(ContactAwareAgent, LetsBoxesHangOverByAQuarterAtMostOnAPallet) {
+  ContainerState state;
+  state.inner_size = Vector3(0.6, 0.4, 0.7);
+  const Item lower = make_box("A", {0.4, 0.4, 0.3});
+  Item upper = make_box("B", {0.6, 0.4, 0.3});
+  upper.upright_only = true;
+  state.boxes.push_back({lower, {Matrix3::Identity(), Vector3(-0.1, 0.0, 0.15)}});
+  const FutureModel future{{upper}, {1.0}, true};
+  const auto agent = make_agent(
+      "contact-aware", {.settings = {}, .future = future, .sequence = {}, .is_reachable = {}, .run = {.time = 0.01}});
+  EXPECT_TRUE(agent->decide(state, upper)) << "two thirds of it rest on A";
+  state.has_walls = false;
+  const auto decision = agent->decide(state, upper);
+  ASSERT_FALSE(decision);
+  EXPECT_EQ(decision.error(), NoPlace::NoStablePlace);
+}
+
 /// Two things that nobody expected, one on the floor and one standing higher.
 TEST_P(EveryAgent, KeepsToObstaclesAndPutsNothingOnThem) {
   ContainerState start = make_container_state(scenario.containers.front());

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "snug/core/rng.hpp"
+#include "snug/packing/internal/policy.hpp"
 #include "snug/packing/test/scene.hpp"
 
 namespace snug::packing::internal {
@@ -264,6 +265,70 @@ TEST(CandidatePoseList, RemembersOnlyThisRoundHoweverManyThereWere) {
   }
   for (int x = 0; x < 3000; ++x) ASSERT_TRUE(list.is_new(0, x, x));
   for (int x = 0; x < 3000; ++x) ASSERT_FALSE(list.is_new(0, x, x));
+}
+
+/// A pallet of 1200 x 800 mm.
+Layout make_pallet() {
+  Rules rules;
+  rules.size_x = 12000;
+  rules.size_y = 8000;
+  rules.size_z = 18000;
+  rules.has_walls = false;
+  return Layout(rules);
+}
+
+/// mm, kg.
+Block box_at(int x, int y, int z, int length, int width, int height, int mass) {
+  return {10 * x, 10 * y, 10 * z, 10 * (x + length), 10 * (y + width), 10 * (z + height), 1000 * mass};
+}
+
+TEST(LayoutTipping, AColumnTipsAtItsWidthOverItsHeight) {
+  Layout layout = make_pallet();
+  for (int i = 0; i < 3; ++i) layout.add(box_at(0, 0, 300 * i, 400, 300, 300, 5));
+  const auto tipping = layout.tipping_of(box_at(0, 0, 900, 400, 300, 300, 5));
+  for (const std::size_t side : {0U, 1U}) EXPECT_NEAR(tipping[side], 400.0 / 1200.0, 1e-12);
+  for (const std::size_t side : {2U, 3U}) EXPECT_NEAR(tipping[side], 300.0 / 1200.0, 1e-12);
+  const auto alone = layout.tipping_of(box_at(600, 0, 0, 400, 300, 300, 5));
+  EXPECT_NEAR(alone[0], 400.0 / 300.0, 1e-12);
+}
+
+TEST(LayoutTipping, WhatHangsOverAtTheTopTipsAllThatItStandsOn) {
+  Layout layout = make_pallet();
+  layout.add(box_at(200, 0, 0, 400, 300, 300, 5));
+  layout.add(box_at(200, 0, 300, 400, 300, 300, 5));
+  // 100 mm to the left: the whole has its middle a third of that off, 450 mm high; a box has 300 mm of face below it.
+  const auto tipping = layout.tipping_of(box_at(100, 0, 600, 400, 300, 300, 5));
+  EXPECT_NEAR(tipping[0], std::min(100.0 / 150.0, (200.0 - 100.0 / 3.0) / 450.0), 1e-12);
+  EXPECT_NEAR(tipping[1], std::min(200.0 / 150.0, (200.0 + 100.0 / 3.0) / 450.0), 1e-12);
+}
+
+TEST(LayoutTipping, ATieSharesItsWeightBetweenTheColumnsThatItJoins) {
+  Layout layout = make_pallet();
+  layout.add(box_at(0, 0, 0, 400, 400, 300, 6));
+  layout.add(box_at(400, 0, 0, 400, 400, 300, 6));
+  // Half of it stands on either column, on 300 mm of each: 250 mm from the outer edge, 450 mm high.
+  const auto tie = layout.tipping_of(box_at(100, 0, 300, 600, 400, 300, 6));
+  const double lever = (6.0 * 200.0 + 3.0 * 250.0) / 9.0, height = (6.0 * 150.0 + 3.0 * 450.0) / 9.0;
+  EXPECT_NEAR(tie[2], 200.0 / height, 1e-12);
+  EXPECT_NEAR(tie[0], (400.0 - lever) / height, 1e-12) << "the right column's inner edge is the nearest";
+  EXPECT_NEAR(tie[1], tie[0], 1e-12);
+}
+
+TEST(LayoutTipping, CostsWhereAColumnStandsByItselfAndHalfWhereANeighbourHoldsIt) {
+  Layout layout = make_pallet();
+  for (int i = 0; i < 3; ++i) layout.add(box_at(0, 0, 300 * i, 400, 300, 300, 5));
+  Piece piece;
+  piece.mass = 5000;
+  piece.orientations.push_back({4000, 3000, 3000, 0, 0, 0});
+  const Policy policy{for_pallets(default_weights()), WasteTable({4000}, 12000), WasteTable({3000}, 18000)};
+  const CandidatePose on_top{0, 0, 9000, 0, 1.0};
+  // Along x it tips at 0.33 g, along y at 0.25 g of 0.3: the edge at y = 0 holds it as little as the open side does.
+  const double each = 1.0 - 0.25 / 0.3;
+  EXPECT_NEAR(see(layout, policy, piece, on_top)[Tipping], 2.0 * each, 1e-12);
+  layout.add(box_at(0, 300, 0, 400, 300, 1000, 5));
+  EXPECT_NEAR(see(layout, policy, piece, on_top)[Tipping], 2.0 * each, 1e-12) << "it ends below the middle";
+  layout.add(box_at(0, 300, 1000, 400, 300, 200, 5));
+  EXPECT_NEAR(see(layout, policy, piece, on_top)[Tipping], 1.5 * each, 1e-12);
 }
 
 }  // namespace
