@@ -140,8 +140,8 @@ class Cell:
     """The robot's cell under way with a program, one tick of its controller at a time.
 
     cup: "phases", "holding" (attached and released at once), or "": phases, with corrections the cup that they were made
-    for; controller: "lagged" or "exact"; robot: name of the scenario's robot, or "": the tool moves by itself;
-    corrections: layer of the scenario's site corrections, or "".
+    for; controller: "lagged", "exact", "fast", or "": as the program was packed; robot: name of the scenario's robot, or
+    "": the tool moves by itself; corrections: layer of the scenario's site corrections, or "".
     """
 
     def __init__(self, scenario: Scenario, sequence: str, program: Program, *, cup: str = ..., controller: str = ...,

@@ -125,14 +125,13 @@ class World {
   std::atomic<bool> busy_{false};
 };
 
-cell::SimulationOptions options_of(const model::Scenario& scenario, const std::string& cup,
-                                   const std::string& controller, const std::string& robot,
+cell::SimulationOptions options_of(const model::Scenario& scenario, const motion::Program& program,
+                                   const std::string& cup, const std::string& controller, const std::string& robot,
                                    const std::string& corrections) {
   cell::SimulationOptions options;
   options.cup = cup.empty() ? runs::cup_for(scenario, corrections) : cup::cup_mode_of(cup, "argument");
-  options.tracking = motion::tracking_of(controller, "argument");
-  if (motion::is_fast(options.tracking))
-    throw InputError("argument", "controller", "'" + controller + "'", "lagged or exact");
+  options.tracking = motion::choose_tracking(controller.empty() ? std::nullopt : std::optional(controller),
+                                             std::nullopt, program.tracking, "argument");
   options.robot = robot;
   return options;
 }
@@ -143,7 +142,7 @@ class Cell {
        const std::string& controller, const std::string& robot, const std::string& corrections)
       : scenario_(std::move(scenario)),
         program_(std::move(program)),
-        simulation_(**scenario_, sequence, options_of(**scenario_, cup, controller, robot, corrections)),
+        simulation_(**scenario_, sequence, options_of(**scenario_, **program_, cup, controller, robot, corrections)),
         plan_(simulation_.prepare(runs::corrected(**scenario_, **program_, corrections))),
         state_(simulation_.make_state()),
         bodies_(bodies_of(simulation_.world())),
@@ -308,7 +307,7 @@ void bind_world(py::module_& m) {
   cell.def(py::init<ScenarioHandle, const std::string&, ProgramHandle, const std::string&, const std::string&,
                     const std::string&, const std::string&>(),
            py::arg("scenario"), py::arg("sequence"), py::arg("program"), py::kw_only(), py::arg("cup") = "",
-           py::arg("controller") = "lagged", py::arg("robot") = "", py::arg("corrections") = "")
+           py::arg("controller") = "", py::arg("robot") = "", py::arg("corrections") = "")
       .def("step", &Cell::step, py::arg("ticks") = 1)
       .def("run", &Cell::run)
       .def("snapshot", &Cell::snapshot)

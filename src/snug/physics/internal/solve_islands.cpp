@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "snug/physics/internal/contact_path.hpp"
 #include "snug/physics/internal/located_impact.hpp"
@@ -250,9 +251,9 @@ bool turn(const WorldModel::MassProperties& mass, const Vector3& torque_W, doubl
 }
 
 /// The angular velocity w at the end of a step that turns the body by dt/2 (w_0 + w), if it is `angular_I` in the
-/// body's axes then: keeps the energy that `turn` keeps. Zero where the step is too long for its iteration.
-Vector3 carried(const Matrix3& R_WI, const Vector3& angular_start, const Vector3& angular_I, double dt,
-                const Vector3& guess) {
+/// body's axes then: keeps the energy that `turn` keeps. None where the step is too long for its iteration.
+std::optional<Vector3> carry_along(const Matrix3& R_WI, const Vector3& angular_start, const Vector3& angular_I,
+                                   double dt, const Vector3& guess) {
   const Vector3 from_start = R_WI * angular_I;
   Vector3 angular = guess;
   for (int k = 0; k < 50; ++k) {
@@ -261,13 +262,13 @@ Vector3 carried(const Matrix3& R_WI, const Vector3& angular_start, const Vector3
     angular = next;
     if (change <= 1e-9 * (1.0 + angular_start.norm())) return angular;
   }
-  return Vector3::Zero();
+  return std::nullopt;
 }
 
-/// The same for a whole step, in as many parts as it takes. Returns the angular velocity at the end, W.
+/// A whole step of `turn`, in as many parts as it takes. Returns the angular velocity at the end, W.
 Vector3 turn_freely(const WorldModel::MassProperties& mass, const BodyWork& body, const Vector3& torque_W, double dt) {
   constexpr int kMaxParts = 1024;
-  constexpr double kLongTurn = 0.1;  ///< rad in a step
+  constexpr double kLongTurn = 0.1;  // rad in a step
   const Matrix3 R_WI = body.R_WB * mass.R_BI;
   for (int parts = 1; parts <= kMaxParts; parts *= 2) {
     Spin spin{R_WI, body.angular_start};
@@ -275,8 +276,8 @@ Vector3 turn_freely(const WorldModel::MassProperties& mass, const BodyWork& body
     while (done < parts && turn(mass, torque_W / parts, dt / parts, spin)) ++done;
     if (done < parts) continue;
     if (dt * body.angular_start.norm() <= kLongTurn) return spin.angular;
-    const Vector3 angular = carried(R_WI, body.angular_start, spin.R_WI.transpose() * spin.angular, dt, spin.angular);
-    return angular.isZero(0.0) ? spin.angular : angular;
+    return carry_along(R_WI, body.angular_start, spin.R_WI.transpose() * spin.angular, dt, spin.angular)
+        .value_or(spin.angular);
   }
   return body.angular_start;
 }
