@@ -99,7 +99,8 @@ TEST(RemoteUr, FollowsTheSlider) {
   const plant::Feedback later = half.go({box().over(0.35, "home", false)});
   ASSERT_EQ(later.end.reason, EndReason::Completed);
   EXPECT_NEAR(later.times[0].moving, 2.0 * there.times[0].moving, 0.05 * there.times[0].moving);
-  EXPECT_LT((later.X_WE.p - there.X_WE.p).norm(), 1e-6);
+  // A tool below 3 mm/s stands; servoj follows 0.03 s late, so what it creeps in that time is left of the way.
+  EXPECT_LT((later.X_WE.p - there.X_WE.p).norm(), 0.03 * 0.003);
 }
 
 TEST(RemoteUr, TellsTheRobotWhatItCarries) {
