@@ -13,6 +13,19 @@
 #include "snug/study/recorded_plant.hpp"
 
 namespace snug::study {
+
+std::vector<std::string> counted_boxes(const std::vector<cell::BoxResult>& boxes,
+                                       const session::SessionResult& session) {
+  std::vector<std::string> counted;
+  for (const cell::BoxResult& box : boxes) {
+    const bool is_rejected = std::ranges::any_of(session.items, [&](const session::ItemReport& item) {
+      return item.id == box.id && item.end == session::ItemEnd::Rejected;
+    });
+    if (box.state == cell::BoxState::Packed && !is_rejected) counted.push_back(box.id);
+  }
+  return counted;
+}
+
 namespace {
 
 class Scorer {
@@ -42,9 +55,8 @@ class Scorer {
   void count(Trial& trial) const {
     trial.boxes = witness_.boxes();
     trial.executed_boxes = trial.boxes_lost = trial.items_sent = trial.items_as_planned = 0;
-    std::vector<std::string> packed;
+    const std::vector<std::string> packed = counted_boxes(trial.boxes, trial.session);
     for (const cell::BoxResult& box : trial.boxes) {
-      if (box.state == cell::BoxState::Packed) packed.push_back(box.id);
       if (box.state != cell::BoxState::Packed && box.state != cell::BoxState::Waiting) ++trial.boxes_lost;
     }
     trial.executed_boxes = static_cast<int>(packed.size());

@@ -29,7 +29,7 @@ struct Trial {
   std::uint64_t seed = 0;  ///< of the session
   std::uint64_t plant_seed = 0;
   bool is_elsewhere = false;  ///< the plant is another program's: its seed and state are not known here
-  int executed_boxes = 0;     ///< packed, by the plant's truth
+  int executed_boxes = 0;     ///< counted_boxes(), by the plant's truth
   double executed_percent = 0.0;
   int items_sent = 0;
   int items_as_planned = 0;
@@ -45,6 +45,10 @@ struct Trial {
   std::uint64_t state_hash = 0;
   simulated_plant::SimulatedPlantOptions plant;
 };
+
+/// Names of the boxes that are packed and that the check of the finished load did not reject.
+[[nodiscard]] std::vector<std::string> counted_boxes(const std::vector<cell::BoxResult>& boxes,
+                                                     const session::SessionResult& session);
 
 /// Called after every item; the session and plant so far.
 using TrialProgress = std::function<void(const Trial& so_far, int item, int items)>;

@@ -9,7 +9,6 @@ namespace {
 /// of the radius; steeper than this (sine between axis and normal) a rim has such a direction.
 constexpr double kOnRim = 0.05;
 constexpr double kLeastSlope = 0.02;
-constexpr double kRocks = 0.01;  ///< rad/s about an axis in the plane of the contact
 
 /// A body as it moves within the step, from its start.
 struct Mover {

@@ -8,6 +8,9 @@ namespace snug::physics::internal {
 /// Contacts of bodies that turn by less than 1e-7 rad in the step stay where they are.
 [[nodiscard]] inline bool turns_within(double dt, const Vector3& angular) { return dt * angular.norm() > 1e-7; }
 
+/// rad/s, about an axis in the plane of a contact: from there on a body rocks.
+inline constexpr double kRocks = 0.01;
+
 /// Arms of one contact from the centres of mass of its bodies, m, W.
 struct ContactArms {
   Vector3 a_mid, a_end, b_mid, b_end;

@@ -16,7 +16,6 @@ constexpr std::size_t kMostRows = 32;  ///< of one body; more are solved as any 
 /// Speed of impact over what gravity gives in a step, from which an impact is located.
 constexpr double kFast = 2.0;
 constexpr double kStays = 1e-5;  ///< m/s, at which a point opens that bears
-constexpr double kRocks = 0.01;  ///< rad/s, about an axis in the plane of the contact
 
 /// What a row began with.
 struct Before {

@@ -39,6 +39,26 @@ SimulatedPlantOptions plant_seed(std::uint64_t seed) {
   return options;
 }
 
+TEST(CountedBoxes, LeavesOutWhatTheCheckOfTheFinishedLoadRejected) {
+  const auto box = [](const char* id, cell::BoxState state) {
+    cell::BoxResult result;
+    result.id = id;
+    result.state = state;
+    return result;
+  };
+  const auto item = [](const char* id, ItemEnd end) {
+    session::ItemReport report;
+    report.id = id;
+    report.end = end;
+    return report;
+  };
+  const std::vector<cell::BoxResult> boxes = {box("A", cell::BoxState::Packed), box("B", cell::BoxState::Packed),
+                                              box("C", cell::BoxState::Lost)};
+  session::SessionResult session;
+  session.items = {item("A", ItemEnd::Placed), item("B", ItemEnd::Rejected), item("C", ItemEnd::Gone)};
+  EXPECT_EQ(counted_boxes(boxes, session), std::vector<std::string>{"A"});
+}
+
 TEST(Trial, PacksADrawnPlantAndIsTheSameWithAnyNumberOfThreads) {
   const model::Scenario scenario = shortened(2);
   SessionOptions options = quick();
