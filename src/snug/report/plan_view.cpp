@@ -9,34 +9,9 @@
 #include "snug/report/escape.hpp"
 #include "snug/report/internal/raw.hpp"
 #include "snug/report/internal/svg.hpp"
+#include "snug/spatial/plane_hull.hpp"
 
 namespace snug::report {
-namespace {
-
-double cross(const Eigen::Vector2d& o, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return (a.x() - o.x()) * (b.y() - o.y()) - (a.y() - o.y()) * (b.x() - o.x());
-}
-
-/// What is seen of points from above: the corners of their convex hull (Andrew's chains).
-std::vector<Eigen::Vector2d> hull_of(std::vector<Eigen::Vector2d> points) {
-  std::ranges::sort(points, [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
-  });
-  std::vector<Eigen::Vector2d> hull;
-  const auto walk = [&](auto first, auto last) {
-    const std::size_t start = hull.size();
-    for (; first != last; ++first) {
-      while (hull.size() >= start + 2 && cross(hull[hull.size() - 2], hull.back(), *first) <= 0.0) hull.pop_back();
-      hull.push_back(*first);
-    }
-    hull.pop_back();
-  };
-  walk(points.begin(), points.end());
-  walk(points.rbegin(), points.rend());
-  return hull;
-}
-
-}  // namespace
 
 BoxOutline outline_of(const std::string& name, const Vector3& size, const Pose& X_TP) {
   BoxOutline outline{name, {}, -std::numeric_limits<double>::infinity()};
@@ -47,7 +22,7 @@ BoxOutline outline_of(const std::string& name, const Vector3& size, const Pose& 
     corners.emplace_back(p_T.x(), p_T.y());
     outline.top = std::max(outline.top, p_T.z());
   }
-  outline.corners_T = hull_of(std::move(corners));
+  for (const std::size_t i : plane_hull(corners)) outline.corners_T.push_back(corners[i]);
   return outline;
 }
 

@@ -5,15 +5,13 @@
 #include <cmath>
 #include <utility>
 
+#include "snug/spatial/plane_hull.hpp"
+
 namespace snug::runs::internal {
 namespace {
 
 constexpr double kBand = 0.1;    ///< m, height of a band
 constexpr double kTouch = 0.03;  ///< m: a box that near to the hoop is one that the film lies on
-
-double turn(const Vector3& a, const Vector3& b, const Vector3& c) {
-  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-}
 
 /// m, in plan view.
 double distance_to(const Vector3& a, const Vector3& b, const Vector3& p) {
@@ -59,20 +57,10 @@ std::vector<Film::Corner> Film::hull_at(double height, std::span<const Pose> X_T
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
     for (const Vector3& p : section(X_TP[i], boxes_[i].size, height)) all.push_back({p, i});
   }
-  std::ranges::stable_sort(all, [](const Corner& a, const Corner& b) {
-    return std::pair(a.p_TQ.x(), a.p_TQ.y()) < std::pair(b.p_TQ.x(), b.p_TQ.y());
-  });
+  std::vector<Eigen::Vector2d> seen;
+  for (const Corner& corner : all) seen.push_back(corner.p_TQ.head<2>());
   std::vector<Corner> hull;
-  const auto chain = [&hull](const Corner& next, std::size_t begin) {
-    while (hull.size() >= begin + 2 && turn(hull[hull.size() - 2].p_TQ, hull.back().p_TQ, next.p_TQ) <= 0.0) {
-      hull.pop_back();
-    }
-    hull.push_back(next);
-  };
-  for (const Corner& next : all) chain(next, 0);
-  const std::size_t upper = hull.empty() ? 0 : hull.size() - 1;
-  for (std::size_t i = all.size(); i-- > 1;) chain(all[i - 1], upper);
-  if (hull.size() > 1) hull.pop_back();
+  for (const std::size_t i : plane_hull(seen)) hull.push_back(all[i]);
   return hull;
 }
 
