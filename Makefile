@@ -27,7 +27,7 @@ setup-python:
 setup-lint:
 	@scripts/install-deps.sh test lint && scripts/install-viewer.sh --background
 setup-peers:
-	@scripts/install-deps.sh peers && scripts/install-viewer.sh --background
+	@scripts/install-deps.sh python peers && scripts/install-viewer.sh --background && scripts/install-peers.sh build-bench/peers
 setup-package:
 	@scripts/install-deps.sh package && scripts/install-viewer.sh --background
 
@@ -111,7 +111,7 @@ cover: setup-test ## which lines the tests reach, by module
 bench: build ## how fast and how accurate the physics is, beside its targets
 	@build/snug bench
 
-bench-peers: setup-peers ## the same scenes in Bullet and MuJoCo, in one run; TOSSES=FILE.csv for tosses, an hour
+bench-peers: setup-peers ## the same scenes in Bullet, MuJoCo, Drake, Rapier and Jolt, in one run; TOSSES=FILE.csv for tosses, an hour
 	@$(call configure-build,bench) && build-bench/bench_peers \
 	  $(if $(TOSSES),--tosses $(TOSSES) --engine snug --engine bullet-si10 --engine mujoco-elliptic-stiff)
 

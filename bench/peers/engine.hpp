@@ -22,6 +22,8 @@ class Engine {
   virtual void step() = 0;
   /// True once the engine has given up on the run (its numbers became infinite or the like).
   [[nodiscard]] virtual bool has_failed() const { return false; }
+  /// CPU seconds of the process that does the steps; one of its own counts its steps alone.
+  [[nodiscard]] virtual double cpu_seconds() const;
 
   [[nodiscard]] virtual Pose pose(int body) const = 0;
   /// Linear part at the body's centre, in W.
@@ -32,7 +34,7 @@ class Engine {
   virtual void insert(int body, const Pose& X_WB) = 0;
   /// For the next step only: a wrench about the body's centre, in W.
   virtual void apply_wrench(int body, const Wrench& wrench_W) = 0;
-  /// Sum of the normal forces between two bodies in the last step, N.
+  /// Sum of the normal forces between two bodies in the last step, N; not a number where the engine does not tell.
   [[nodiscard]] virtual double normal_force(int body_a, int body_b) const = 0;
 
   /// For the next step only: the spring pulls a body. The holder moves from `begin` to `end` in this step.
@@ -54,9 +56,15 @@ struct MujocoSettings {
 /// The stiffness that gave S1 0.013 mm of penetration and S3 0.025 mm of creep: four steps of time constant.
 inline constexpr MujocoSettings kMujocoStiff{true, 10.0, 0.004, 0.95, 0.99};
 
+struct SnugSettings {
+  bool bears_on_faces = false;  ///< `bearing: face` for every pair
+};
+
 /// snug itself, with the solver settings that scenarios have by default.
-[[nodiscard]] std::unique_ptr<Engine> make_snug();
+[[nodiscard]] std::unique_ptr<Engine> make_snug(const SnugSettings& settings);
 [[nodiscard]] std::unique_ptr<Engine> make_bullet(const BulletSettings& settings);
 [[nodiscard]] std::unique_ptr<Engine> make_mujoco(const MujocoSettings& settings);
+/// An engine that answers in a process of its own (workers/protocol.py).
+[[nodiscard]] std::unique_ptr<Engine> make_process(const std::vector<std::string>& command);
 
 }  // namespace snug::peers

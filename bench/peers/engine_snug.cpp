@@ -15,6 +15,8 @@ constexpr int kBox = 0, kFixed = 1;  // materials
 
 class SnugEngine final : public Engine {
  public:
+  explicit SnugEngine(const SnugSettings& settings) : settings_(settings) {}
+
   void build(const Scene& scene, double dt) override {
     model_ = physics::WorldModel{};
     const model::SolverSettings solver;
@@ -27,11 +29,12 @@ class SnugEngine final : public Engine {
     model_.settings.sleep.enabled = false;
     model_.gravity = scene.gravity;
     model_.material_count = 2;
-    const physics::ContactLaw box_box{scene.box_box.friction, scene.box_box.restitution, 0.0, 0.0};
+    physics::ContactLaw box_box{scene.box_box.friction, scene.box_box.restitution, 0.0, 0.0};
     const Contact& fixed = scene.box_container;
     physics::ContactLaw box_fixed{fixed.friction, fixed.restitution, fixed.stiffness, 0.0};
     box_fixed.damping_ratio = fixed.snug_damping_ratio;
     box_fixed.edge_friction = fixed.edge_friction;
+    if (settings_.bears_on_faces) box_box.bearing = box_fixed.bearing = physics::Bearing::Face;
     model_.laws = {box_box, box_fixed, box_fixed, box_fixed};
     for (const BoxBody& box : scene.bodies) model_.bodies.push_back(body_of(box));
     plane_ = static_cast<int>(model_.bodies.size());
@@ -129,6 +132,7 @@ class SnugEngine final : public Engine {
     return body;
   }
 
+  SnugSettings settings_;
   physics::WorldModel model_;
   physics::WorldState state_;
   std::optional<physics::Workspace> work_;
@@ -142,6 +146,6 @@ class SnugEngine final : public Engine {
 
 }  // namespace
 
-std::unique_ptr<Engine> make_snug() { return std::make_unique<SnugEngine>(); }
+std::unique_ptr<Engine> make_snug(const SnugSettings& settings) { return std::make_unique<SnugEngine>(settings); }
 
 }  // namespace snug::peers

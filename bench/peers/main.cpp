@@ -1,10 +1,11 @@
-// bench_peers: the scenes S1 to S6 and piles in every engine at hand, as a table or as JSON.
+// bench_peers: the scenes in every engine at hand, as a table or as JSON.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -20,24 +21,62 @@ using snug::peers::Result;
 struct Candidate {
   std::string name;
   std::function<std::unique_ptr<Engine>()> make;
+  std::filesystem::path needs{};  ///< a package that may be absent
+  bool is_slow = false;           ///< milliseconds a step: measured only where it is asked for
 };
+
+const std::filesystem::path kPackages = SNUG_PEER_PACKAGES;
+
+/// An engine of Python's package index. `module`: the folder of the package.
+Candidate from_wheel(const std::string& name, const std::string& worker, const std::string& module,
+                     std::vector<std::string> options) {
+  std::vector<std::string> command{(kPackages / "bin/python").string(),
+                                   std::string(SNUG_PEER_WORKERS "/") + worker + "_worker.py"};
+  command.insert(command.end(), options.begin(), options.end());
+  return {name, [command] { return snug::peers::make_process(command); }, kPackages / "modules" / module};
+}
+
+/// Jolt of npm's package index.
+Candidate from_npm(const std::string& name, const std::vector<std::string>& options) {
+  std::vector<std::string> command{"node", SNUG_PEER_WORKERS "/jolt_worker.mjs", (kPackages / "npm").string()};
+  command.insert(command.end(), options.begin(), options.end());
+  return {name, [command] { return snug::peers::make_process(command); }, kPackages / "npm/node_modules/jolt-physics"};
+}
+
+Candidate slow(Candidate candidate) {
+  candidate.is_slow = true;
+  return candidate;
+}
 
 /// The settings are those of bench/README.md; a new engine is one line here.
 std::vector<Candidate> candidates() {
   using namespace snug::peers;
+  const std::vector<std::string> stiff{"--cone", "elliptic", "--impratio", "10",  "--solref",
+                                       "0.004",  "--solimp", "0.95",       "0.99"};
   return {
-      {"snug", [] { return make_snug(); }},
+      {"snug", [] { return make_snug({}); }},
+      {"snug-face", [] { return make_snug({.bears_on_faces = true}); }},
       {"bullet-si50", [] { return make_bullet({.iterations = 50, .use_two_friction_directions = true}); }},
       {"bullet-si10", [] { return make_bullet({}); }},
       {"mujoco-elliptic-stiff", [] { return make_mujoco(kMujocoStiff); }},
       {"mujoco-pyramid", [] { return make_mujoco({}); }},
+      from_wheel("mujoco4-elliptic-stiff", "mujoco", "mujoco", stiff),
+      from_wheel("mujoco4-pyramid", "mujoco", "mujoco", {}),
+      from_wheel("rapier", "rapier", "rapier3d", {}),
+      from_wheel("rapier-50", "rapier", "rapier3d", {"--iterations", "50"}),
+      from_npm("jolt", {}),
+      from_npm("jolt-50-10", {"--steps", "50", "10", "--slop", "1e-4"}),
+      slow(from_wheel("drake-hydroelastic", "drake", "pydrake", {})),
+      slow(from_wheel("newton-kamino", "newton", "newton", {})),
   };
 }
 
 constexpr const char* kUsage =
-    R"(usage: bench_peers [--json] [--engine NAME]... [--scene s1|...|s6|pile100|pile300|pile1000]...
+    R"(usage: bench_peers [--json] [--engine NAME]... [--scene NAME]...
        bench_peers --tosses FILE.csv [--evaluations N] [--starts N] [--json] [--engine NAME]...
-Runs the scenes in the engines named (default: s1 to s6 in all) and prints the figures that bench/README.md explains.
+Runs scenes in the engines named (default: s1 to s7, tower and wall in all that are installed but Drake and Newton) and
+prints the figures that bench/README.md explains. More scenes: pile100, pile300, pile1000 (to 1.4 s), heap100, heap300,
+heap1000 (to 4 s).
   bench_peers --scene s1 --engine bullet-si50
   bench_peers --scene pile300 --engine snug --engine bullet-si50
   bench_peers --json > peers.json
@@ -54,9 +93,9 @@ bool is_wanted(const std::vector<std::string>& wanted, const std::string& name) 
   return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
 }
 
-const std::vector<std::string> kScenes{"s1", "s2", "s3", "s4", "s5", "s6"};
-/// Only where they are asked for: MuJoCo takes a minute for 300 and has no room for 1000.
-const std::vector<std::string> kPiles{"pile100", "pile300", "pile1000"};
+const std::vector<std::string> kScenes{"s1", "s2", "s3", "s4", "s5", "s6", "s7", "tower", "wall"};
+/// Only where they are asked for: they take long.
+const std::vector<std::string> kPiles{"pile100", "pile300", "pile1000", "heap100", "heap300", "heap1000"};
 
 /// The problem with the arguments, empty if there is none.
 std::string parse(int argc, char** argv, Options& options) {
@@ -111,6 +150,11 @@ Table run_all(const Options& options) {
   Table table;
   for (const Candidate& candidate : candidates()) {
     if (!is_wanted(options.engines, candidate.name)) continue;
+    if (candidate.is_slow && options.engines.empty()) continue;
+    if (!candidate.needs.empty() && !std::filesystem::exists(candidate.needs)) {
+      fmt::print(stderr, "{} skipped: not installed (scripts/install-peers.sh)\n", candidate.name);
+      continue;
+    }
     table.engines.push_back(candidate.name);
     if (!options.tosses.file.empty()) {
       fmt::print(stderr, "{} tosses\n", candidate.name);
@@ -146,7 +190,9 @@ void print_ratios(const Table& table, const std::string& name) {
   const Row& row = table.rows.at(name);
   fmt::print("{:<32}{:>6}", "  relative to the first", "");
   for (const std::string& engine : table.engines) {
-    fmt::print("{:>24.3g}", row.values.at(engine) / row.values.at(table.engines.front()));
+    const auto value = row.values.find(engine), first = row.values.find(table.engines.front());
+    const bool is_known = value != row.values.end() && first != row.values.end();
+    fmt::print("{:>24}", is_known ? fmt::format("{:.3g}", value->second / first->second) : "-");
   }
   fmt::print("\n");
 }

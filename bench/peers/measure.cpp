@@ -1,4 +1,4 @@
-// Measure: the runs and figures of S1 to S6 and of piles.
+// Measure: the runs and figures of S1 to S7, tower, wall and piles.
 #include "peers/measure.hpp"
 
 #include <algorithm>
@@ -7,8 +7,10 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "peers/penetration.hpp"
+#include "peers/planar.hpp"
 #include "peers/spring.hpp"
 #include "snug/core/rng.hpp"
 
@@ -16,15 +18,16 @@ namespace snug::peers {
 
 namespace {
 
-constexpr double kDt = 1e-3;  // s, of every scene but S5
+constexpr double kDt = 1e-3;     // s, of every scene but S5 and piles
+constexpr double kSettle = 0.5;  // s, before a push
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kGravity = 9.81;  // m/s^2
 
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
+/// Of one pile: bench::drawn_pile.
+struct PileSettings {
+  int count, side;
+  unsigned seed;
+};
 
 /// Largest value seen; once not a number, always not a number.
 class Largest {
@@ -41,11 +44,12 @@ class Largest {
 /// Microseconds of CPU per step in the best whole second of simulated time, and in all of them.
 class StepTimer {
  public:
+  explicit StepTimer(const Engine& engine) : engine_(engine) {}
   template <class Work>
   void time(int steps, Work&& work) {
-    const double begin = cpu_seconds();
+    const double begin = engine_.cpu_seconds();
     work();
-    const double spent = cpu_seconds() - begin;
+    const double spent = engine_.cpu_seconds() - begin;
     second_ += spent;
     total_ += spent;
     steps_ += steps;
@@ -58,6 +62,7 @@ class StepTimer {
 
  private:
   static constexpr int kStepsPerSecond = 1000;
+  const Engine& engine_;
   double best_ = std::numeric_limits<double>::max(), second_ = 0.0, total_ = 0.0;
   int steps_ = 0;
 };
@@ -79,7 +84,7 @@ std::vector<Result> measure_stack(Engine& engine) {
   const Scene scene = stacked_scene();
   const std::vector<bool> present(scene.bodies.size(), true);
   engine.build(scene, kDt);
-  StepTimer timer;
+  StepTimer timer(engine);
   Largest depth, drift;
   std::vector<Pose> start;
   for (int tenth = 1; tenth <= 100; ++tenth) {
@@ -129,7 +134,7 @@ void drop_boxes(Engine& engine, unsigned seed, DropFigures& figures) {
   for (const BoxBody& box : scene.bodies) present.push_back(box.is_present);
   std::vector<Pose> poses(scene.bodies.size());
   for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = scene.bodies[i].X_WB;
-  StepTimer timer;
+  StepTimer timer(engine);
   for (int k = 0; k < kSteps; ++k) {
     const std::size_t next = static_cast<std::size_t>(k / kInterval);
     if (k % kInterval == 0 && next < 12) {
@@ -161,7 +166,7 @@ std::vector<Result> measure_drop(Engine& engine) {
 }
 
 std::vector<Result> measure_slide(Engine& engine) {
-  constexpr double kSettle = 0.5, kFriction = 0.2;  // s, -
+  constexpr double kFriction = 0.2;
   std::vector<Result> results;
   for (const double heading_deg : {0.0, 22.5, 45.0}) {
     engine.build(sliding_scene(0.0), kDt);
@@ -269,7 +274,7 @@ GapFigures press_into_gap(Engine& engine, const HeldScene& held) {
   constexpr double kJam = 200.0;                              // N, of the 245 with which the spring can press
   engine.build(held.scene, kDt);
   GapFigures figures{.smallest_hold = std::numeric_limits<double>::max()};
-  StepTimer timer;
+  StepTimer timer(engine);
   double window = 0.0;
   const int steps = static_cast<int>(std::lround(held.end / kDt));
   for (int i = 0; i < steps; ++i) {
@@ -307,26 +312,78 @@ std::vector<Result> measure_gap(Engine& engine) {
           {"s6c.passes_through", c.is_complete ? 1.0 : 0.0, "1"}};
 }
 
-/// The piles of `snug bench piles`, while they fall, land and settle. `name`: of the scene.
-std::vector<Result> measure_pile(Engine& engine, const std::string& name, const Scene& scene, int count) {
-  constexpr double kStep = 2e-3;                // s
-  constexpr int kSteps = 700, kLookEvery = 20;  // at depths, which take long
+/// Slides and turns on a plane, as the planar integral of an even pressure has it.
+std::vector<Result> measure_turns(Engine& engine) {
+  Largest way_percent, yaw_percent;
+  const Scene scene = turning_scene();
+  for (const PlanarMotion& start : {PlanarMotion{.velocity = {0.5, 0.0}, .rate = 4.0},
+                                    {.velocity = {0.8, 0.3}, .rate = 3.0},
+                                    {.velocity = {0.3, 0.0}, .rate = 6.0},
+                                    {.velocity = {0.0, 1.0}, .rate = 10.0}}) {
+    const PlanarMotion expected = planar_rest(start, scene.bodies[0].half.head<2>(), scene.box_container.friction);
+    engine.build(scene, kDt);
+    run(engine, kSettle);
+    const Pose from = engine.pose(0);
+    engine.set_motion(0, from, {{start.velocity.x(), start.velocity.y(), 0.0}, {0.0, 0.0, start.rate}});
+    run(engine, 1.5);
+    const Pose to = engine.pose(0);
+    const Matrix3 turned = to.R * from.R.transpose();
+    way_percent.see(100.0 * ((to.p - from.p).head<2>() - expected.position).norm() / expected.position.norm());
+    yaw_percent.see(100.0 * std::abs(std::atan2(turned(1, 0), turned(0, 0)) / expected.yaw - 1.0));
+  }
+  return {{"s7.way_error_percent", way_percent.value(), "%"}, {"s7.turn_error_percent", yaw_percent.value(), "%"}};
+}
+
+/// What stands, for 5 s: the largest way of a box, and its time.
+std::vector<Result> measure_standing(Engine& engine, const std::string& name, const Scene& scene) {
+  const std::vector<bool> present(scene.bodies.size(), true);
+  engine.build(scene, kDt);
+  StepTimer timer(engine);
+  Largest depth, drift;
+  for (int tenth = 1; tenth <= 50; ++tenth) {
+    timer.time(100, [&] { run(engine, 0.1); });
+    const std::vector<Pose> poses = poses_of(engine, scene);
+    depth.see(engine.has_failed() ? std::numeric_limits<double>::quiet_NaN() : worst_depth(scene, poses, present));
+    for (std::size_t i = 0; i < poses.size(); ++i) drift.see((poses[i].p - scene.bodies[i].X_WB.p).norm());
+  }
+  return {{name + ".us_per_body_and_step", timer.mean_us() / static_cast<double>(scene.bodies.size()), "us"},
+          {name + ".penetration_mm", 1e3 * depth.value(), "mm"},
+          {name + ".drift_mm", 1e3 * drift.value(), "mm"}};
+}
+
+/// The piles of `snug bench piles`, while they fall, land and settle: to `duration`, s, in windows of 0.2 s.
+std::vector<Result> measure_pile(Engine& engine, const std::string& name, const PileSettings& pile, double duration) {
+  constexpr double kStep = 2e-3;                       // s
+  constexpr int kLookEvery = 20, kLooksPerWindow = 5;  // steps; at depths, which take long
+  const Scene scene = pile_scene(pile.count, pile.side, pile.seed);
   engine.build(scene, kStep);
   const std::vector<bool> present(scene.bodies.size(), true);
-  Largest depth;
-  double spent = 0.0;
-  for (int k = 0; k < kSteps; k += kLookEvery) {
-    const double begin = cpu_seconds();
+  const double steps_and_bodies = kLookEvery * static_cast<double>(pile.count);
+  const int looks = static_cast<int>(std::lround(duration / kStep)) / kLookEvery;
+  Largest depth, worst;
+  double spent = 0.0, window = 0.0;
+  for (int k = 1; k <= looks; ++k) {
+    const double begin = engine.cpu_seconds();
     for (int i = 0; i < kLookEvery; ++i) engine.step();
-    spent += cpu_seconds() - begin;
+    window += engine.cpu_seconds() - begin;
     depth.see(engine.has_failed() ? std::numeric_limits<double>::quiet_NaN()
                                   : worst_depth(scene, poses_of(engine, scene), present));
+    if (k % kLooksPerWindow != 0) continue;
+    worst.see(1e6 * window / (kLooksPerWindow * steps_and_bodies));
+    spent += std::exchange(window, 0.0);
   }
-  return {{name + ".us_per_body_and_step", 1e6 * spent / (static_cast<double>(kSteps) * count), "us"},
+  return {{name + ".us_per_body_and_step", 1e6 * spent / (looks * steps_and_bodies), "us"},
+          {name + ".worst_window_us", worst.value(), "us"},
           {name + ".worst_penetration_mm", 1e3 * depth.value(), "mm"}};
 }
 
 }  // namespace
+
+double Engine::cpu_seconds() const {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 std::vector<Result> measure(Engine& engine, const std::string& scene) {
   if (scene == "s1") return measure_stack(engine);
@@ -335,9 +392,13 @@ std::vector<Result> measure(Engine& engine, const std::string& scene) {
   if (scene == "s4") return measure_bounce(engine);
   if (scene == "s5") return measure_swing(engine);
   if (scene == "s6") return measure_gap(engine);
-  if (scene == "pile100") return measure_pile(engine, scene, pile_scene(100, 5, 1), 100);
-  if (scene == "pile300") return measure_pile(engine, scene, pile_scene(300, 7, 2), 300);
-  if (scene == "pile1000") return measure_pile(engine, scene, pile_scene(1000, 11, 3), 1000);
+  if (scene == "s7") return measure_turns(engine);
+  if (scene == "tower") return measure_standing(engine, scene, tower_scene());
+  if (scene == "wall") return measure_standing(engine, scene, wall_scene());
+  for (const PileSettings& pile : {PileSettings{100, 5, 1}, {300, 7, 2}, {1000, 11, 3}}) {
+    if (scene == "pile" + std::to_string(pile.count)) return measure_pile(engine, scene, pile, 1.4);
+    if (scene == "heap" + std::to_string(pile.count)) return measure_pile(engine, scene, pile, 4.0);
+  }
   return {};
 }
 

@@ -1,4 +1,4 @@
-// Scenes S1 to S6 and piles: sizes, masses, poses and motions.
+// Scenes S1 to S7, tower, wall and piles: sizes, masses, poses and motions.
 #include "peers/scenes.hpp"
 
 #include <array>
@@ -206,6 +206,33 @@ HeldScene gap_scene(GapVariant variant) {
   held.held = static_cast<int>(held.scene.bodies.size());
   held.scene.bodies.push_back(box);
   return held;
+}
+
+Scene turning_scene() {
+  Scene scene{.name = "s7", .has_plane = true, .box_box = {0.3, 0.0}, .box_container = {0.3, 0.0}};
+  scene.bodies.push_back({.name = "box", .half = {0.15, 0.10, 0.01}, .mass = 1.0});
+  scene.bodies.back().X_WB.p.z() = 0.01;
+  return scene;
+}
+
+Scene tower_scene() {
+  Scene scene{.name = "tower", .has_plane = true, .box_box = {0.4, 0.0}, .box_container = {0.4, 0.0}};
+  for (int i = 0; i < 40; ++i) {
+    scene.bodies.push_back({.name = "box", .half = {0.10, 0.10, 0.05}, .mass = 1.0});
+    scene.bodies.back().X_WB.p.z() = 0.05 + 0.1 * i;
+  }
+  return scene;
+}
+
+Scene wall_scene() {
+  Scene scene{.name = "wall", .has_plane = true, .box_box = {0.4, 0.0}, .box_container = {0.4, 0.0}};
+  for (int row = 0; row < 15; ++row) {
+    for (int i = 0; i < 7; ++i) {
+      scene.bodies.push_back({.name = "brick", .half = {0.10, 0.05, 0.05}, .mass = 1.0});
+      scene.bodies.back().X_WB.p = {0.2 * i + (row % 2) * 0.1, 0.0, 0.05 + 0.1 * row};
+    }
+  }
+  return scene;
 }
 
 Scene pile_scene(int count, int side, unsigned seed) {

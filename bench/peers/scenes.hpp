@@ -1,4 +1,5 @@
-// Scenes S1 to S6 and piles: the work that every engine is given, as plain data that no engine had a say in.
+// Scenes S1 to S7, tower, wall and piles: the work that every engine is given, as plain data that no engine had a say
+// in.
 #pragma once
 
 #include <optional>
@@ -86,6 +87,13 @@ enum class GapVariant { A, B, C };
 [[nodiscard]] HeldScene swing_scene();
 /// S6: one B4 pressed between two others.
 [[nodiscard]] HeldScene gap_scene(GapVariant variant);
+
+/// S7: a flat box on a plane, mu 0.3, that slides and turns.
+[[nodiscard]] Scene turning_scene();
+/// 40 boxes of 200 x 200 x 100 mm, one on the other, on a plane.
+[[nodiscard]] Scene tower_scene();
+/// 105 bricks of 200 x 100 x 100 mm on a plane, 15 rows of 7, each row half a brick aside.
+[[nodiscard]] Scene wall_scene();
 
 /// Boxes that fall into a tote in layers of side x side: bench::drawn_pile, as `snug bench piles` has it.
 [[nodiscard]] Scene pile_scene(int count, int side, unsigned seed);
