@@ -287,7 +287,7 @@ GapFigures press_into_gap(Engine& engine, const HeldScene& held) {
     window += force / kWindow;
     if ((i + 1) % kWindow != 0) continue;
     if (i >= steps - kHold) {
-      figures.smallest_hold = std::min(figures.smallest_hold, window);
+      figures.smallest_hold = std::isnan(window) ? window : std::min(figures.smallest_hold, window);
       if (figures.smallest_hold > kJam) figures.held_for += kWindow * kDt;
     }
     window = 0.0;
@@ -307,7 +307,7 @@ std::vector<Result> measure_gap(Engine& engine) {
           {"s6b.completes", b.is_complete ? 1.0 : 0.0, "1"},
           {"s6b.us_per_step", b.best_us, "us"},
           {"s6c.jam_force_N", c.smallest_hold, "N"},
-          {"s6c.held_for_s", c.held_for, "s"},
+          {"s6c.held_for_s", std::isnan(c.smallest_hold) ? c.smallest_hold : c.held_for, "s"},
           {"s6c.peak_force_N", c.peak.value(), "N"},
           {"s6c.passes_through", c.is_complete ? 1.0 : 0.0, "1"}};
 }
