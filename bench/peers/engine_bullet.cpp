@@ -92,11 +92,15 @@ class BulletEngine final : public Engine {
   static void set_contact(btRigidBody& body, const Scene& scene, bool is_box) {
     const double friction = std::sqrt(scene.box_box.friction), restitution = std::sqrt(scene.box_box.restitution);
     body.setFriction(is_box ? friction : scene.box_container.friction / friction);
-    body.setRestitution(is_box ? restitution : scene.box_container.restitution / restitution);
+    body.setRestitution(is_box || restitution == 0.0 ? restitution : scene.box_container.restitution / restitution);
   }
 
   void add(const Scene& scene, const BoxBody& box) {
-    shapes_.push_back(std::make_unique<btBoxShape>(to_bullet(box.half)));
+    if (box.is_round) {
+      shapes_.push_back(std::make_unique<btCylinderShapeZ>(to_bullet(box.half)));
+    } else {
+      shapes_.push_back(std::make_unique<btBoxShape>(to_bullet(box.half)));
+    }
     btVector3 inertia(0, 0, 0);
     if (box.mass > 0) shapes_.back()->calculateLocalInertia(box.mass, inertia);
     inertia *= box.inertia_factor;

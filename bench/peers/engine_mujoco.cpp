@@ -24,14 +24,14 @@ std::string geom_xml(const BoxBody& box, const Scene& scene) {
   const Vector3& p = box.X_WB.p;
   const std::string place =
       fmt::format(R"(pos="{} {} {}" quat="{} {} {} {}")", p.x(), p.y(), p.z(), quat.w(), quat.x(), quat.y(), quat.z());
+  const std::string size = box.is_round ? fmt::format("{} {}", box.half.x(), box.half.z())
+                                        : fmt::format("{} {} {}", box.half.x(), box.half.y(), box.half.z());
   const std::string geom =
-      fmt::format(R"(type="box" size="{} {} {}" friction="{} 0.005 0.0001")", box.half.x(), box.half.y(), box.half.z(),
+      fmt::format(R"(type="{}" size="{}" friction="{} 0.005 0.0001")", box.is_round ? "cylinder" : "box", size,
                   is_box ? scene.box_box.friction : scene.box_container.friction);
   if (!is_box) return fmt::format("<geom {} {} priority=\"1\"/>\n", place, geom);
   if (box.inertia_factor != 1.0) {
-    const Vector3 square = (2.0 * box.half).cwiseAbs2();
-    const Vector3 moments = Vector3(square.y() + square.z(), square.x() + square.z(), square.x() + square.y()) *
-                            box.inertia_factor * box.mass / 12.0;
+    const Vector3 moments = moments_of(box);
     return fmt::format(
         "<body {}><freejoint/><inertial pos=\"0 0 0\" mass=\"{}\" diaginertia=\"{} {} {}\"/><geom {} pos=\"{} {} "
         "{}\"/></body>\n",

@@ -38,8 +38,11 @@ Vector3 vector_of(const json& form, std::size_t from) {
 json to_json(const Scene& scene, double dt) {
   json bodies = json::array();
   for (const BoxBody& box : scene.bodies) {
-    bodies.push_back(
-        {{"half", to_json(box.half)}, {"mass", box.mass}, {"pose", to_json(box.X_WB)}, {"present", box.is_present}});
+    bodies.push_back({{"half", to_json(box.half)},
+                      {"is_round", box.is_round},
+                      {"mass", box.mass},
+                      {"pose", to_json(box.X_WB)},
+                      {"present", box.is_present}});
   }
   return {{"dt", dt},
           {"gravity", to_json(scene.gravity)},

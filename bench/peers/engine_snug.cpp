@@ -40,8 +40,8 @@ class SnugEngine final : public Engine {
     plane_ = static_cast<int>(model_.bodies.size());
     if (scene.has_plane) {
       constexpr double kHalf = 10.0;
-      BoxBody plane{
-          "plane", Vector3::Constant(kHalf), 0.0, {Matrix3::Identity(), Vector3(0, 0, scene.plane_height - kHalf)}};
+      BoxBody plane{.name = "plane", .half = Vector3::Constant(kHalf)};
+      plane.X_WB.p.z() = scene.plane_height - kHalf;
       model_.bodies.push_back(body_of(plane));
     }
     holder_ = physics::BodyId{static_cast<int>(model_.bodies.size())};
@@ -118,16 +118,14 @@ class SnugEngine final : public Engine {
     physics::BodyModel body;
     body.name = box.name;
     body.kind = box.mass > 0.0 ? physics::BodyKind::Dynamic : physics::BodyKind::Static;
-    const Vector3 square = (2.0 * box.half).cwiseAbs2();
     body.inertia.mass = std::max(box.mass, 1.0);
     if (box.mass > 0.0) {
       body.inertia.mass = box.mass;
-      body.inertia.inertia = (Vector3(square.y() + square.z(), square.x() + square.z(), square.x() + square.y()) *
-                              box.inertia_factor * box.mass / 12.0)
-                                 .asDiagonal();
+      body.inertia.inertia = moments_of(box).asDiagonal();
     }
-    body.geoms = {
-        {geometry::Box{box.half}, Pose{Matrix3::Identity(), box.middle}, box.mass > 0.0 ? kBox : kFixed, true}};
+    geometry::Shape shape = geometry::Box{box.half};
+    if (box.is_round) shape = geometry::Cylinder{box.half.z(), box.half.x()};
+    body.geoms = {{shape, Pose{Matrix3::Identity(), box.middle}, box.mass > 0.0 ? kBox : kFixed, true}};
     body.X_WB = box.X_WB;
     return body;
   }

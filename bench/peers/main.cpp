@@ -74,7 +74,7 @@ std::vector<Candidate> candidates() {
 constexpr const char* kUsage =
     R"(usage: bench_peers [--json] [--engine NAME]... [--scene NAME]...
        bench_peers --tosses FILE.csv [--evaluations N] [--starts N] [--json] [--engine NAME]...
-Runs scenes in the engines named (default: s1 to s7, tower and wall in all that are installed but Drake and Newton) and
+Runs scenes in the engines named (default: s1 to s8, tower and wall in all that are installed but Drake and Newton) and
 prints the figures that bench/README.md explains. More scenes: pile100, pile300, pile1000 (to 1.4 s), heap100, heap300,
 heap1000 (to 4 s).
   bench_peers --scene s1 --engine bullet-si50
@@ -93,7 +93,7 @@ bool is_wanted(const std::vector<std::string>& wanted, const std::string& name) 
   return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
 }
 
-const std::vector<std::string> kScenes{"s1", "s2", "s3", "s4", "s5", "s6", "s7", "tower", "wall"};
+const std::vector<std::string> kScenes{"s1", "s2", "s3", "s4", "s5", "s6", "s7", "s8", "tower", "wall"};
 /// Only where they are asked for: they take long.
 const std::vector<std::string> kPiles{"pile100", "pile300", "pile1000", "heap100", "heap300", "heap1000"};
 

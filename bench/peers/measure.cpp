@@ -1,4 +1,4 @@
-// Measure: the runs and figures of S1 to S7, tower, wall and piles.
+// Measure: the runs and figures of S1 to S8, tower, wall and piles.
 #include "peers/measure.hpp"
 
 #include <algorithm>
@@ -334,6 +334,29 @@ std::vector<Result> measure_turns(Engine& engine) {
   return {{"s7.way_error_percent", way_percent.value(), "%"}, {"s7.turn_error_percent", yaw_percent.value(), "%"}};
 }
 
+/// Energy of a free body on a plane, over that of the same lying flat at rest, J.
+double energy_above_flat(const Engine& engine, const Scene& scene) {
+  const BoxBody& body = scene.bodies[0];
+  const Pose X_WB = engine.pose(0);
+  const Twist V_WB = engine.velocity(0);
+  const Vector3 rate_B = X_WB.R.transpose() * V_WB.angular;
+  return 0.5 * body.mass * V_WB.linear.squaredNorm() + 0.5 * moments_of(body).dot(rate_B.cwiseAbs2()) +
+         body.mass * kGravity * (X_WB.p.z() - body.half.z());
+}
+
+/// Euler's disc: in steady motion for ever where nothing dissipates.
+std::vector<Result> measure_disc(Engine& engine) {
+  const Scene scene = disc_scene();
+  engine.build(scene, kDt);
+  // w along the diameter through the point of touch: w^2 = 4 g / (R sin a) of a thin disc, and what its thickness adds.
+  engine.set_motion(0, scene.bodies[0].X_WB, {Vector3::Zero(), {-19.809088823063014, 0.0, 11.436782764396632}});
+  const double start = energy_above_flat(engine, scene);
+  run(engine, 1.0);
+  const double lean = std::acos(std::clamp(engine.pose(0).R(2, 2), -1.0, 1.0)) / kDegree;
+  return {{"s8.energy_after_1s_percent", 100.0 * energy_above_flat(engine, scene) / start, "%"},
+          {"s8.lean_after_1s_deg", lean, "deg"}};
+}
+
 /// What stands, for 5 s: the largest way of a box, and its time.
 std::vector<Result> measure_standing(Engine& engine, const std::string& name, const Scene& scene) {
   const std::vector<bool> present(scene.bodies.size(), true);
@@ -393,6 +416,7 @@ std::vector<Result> measure(Engine& engine, const std::string& scene) {
   if (scene == "s5") return measure_swing(engine);
   if (scene == "s6") return measure_gap(engine);
   if (scene == "s7") return measure_turns(engine);
+  if (scene == "s8") return measure_disc(engine);
   if (scene == "tower") return measure_standing(engine, scene, tower_scene());
   if (scene == "wall") return measure_standing(engine, scene, wall_scene());
   for (const PileSettings& pile : {PileSettings{100, 5, 1}, {300, 7, 2}, {1000, 11, 3}}) {

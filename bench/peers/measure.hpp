@@ -14,7 +14,7 @@ struct Result {
   std::string unit;
 };
 
-/// scene: "s1" .. "s7", "tower", "wall", "pile100", "heap100" and the same of 300 and 1000; anything else gives
+/// scene: "s1" .. "s8", "tower", "wall", "pile100", "heap100" and the same of 300 and 1000; anything else gives
 /// nothing. bench/README.md says what each figure means.
 [[nodiscard]] std::vector<Result> measure(Engine& engine, const std::string& scene);
 

@@ -1,4 +1,4 @@
-// Scenes S1 to S7, tower, wall and piles: sizes, masses, poses and motions.
+// Scenes S1 to S8, tower, wall and piles: sizes, masses, poses and motions.
 #include "peers/scenes.hpp"
 
 #include <array>
@@ -121,6 +121,16 @@ BoxBody parcel(int type) {
   return {.name = parcel.name, .half = 0.5 * Vector3(parcel.x, parcel.y, parcel.z), .mass = parcel.mass};
 }
 
+Vector3 moments_of(const BoxBody& box) {
+  const double factor = box.inertia_factor * box.mass / 12.0;
+  const Vector3 square = (2.0 * box.half).cwiseAbs2();
+  if (box.is_round) {
+    const double across = 0.75 * square.x() + square.z();
+    return factor * Vector3(across, across, 1.5 * square.x());
+  }
+  return factor * Vector3(square.y() + square.z(), square.x() + square.z(), square.x() + square.y());
+}
+
 Scene stacked_scene() {
   constexpr double gap = 1 * kMm, rise = 0.2 * kMm;
   const double x0 = -kContainerHalf.x(), y0 = -kContainerHalf.y();
@@ -212,6 +222,15 @@ Scene turning_scene() {
   Scene scene{.name = "s7", .has_plane = true, .box_box = {0.3, 0.0}, .box_container = {0.3, 0.0}};
   scene.bodies.push_back({.name = "box", .half = {0.15, 0.10, 0.01}, .mass = 1.0});
   scene.bodies.back().X_WB.p.z() = 0.01;
+  return scene;
+}
+
+Scene disc_scene() {
+  Scene scene{.name = "s8", .has_plane = true, .box_box = {0.6, 0.0}, .box_container = {0.6, 0.0}};
+  BoxBody disc{.name = "disc", .half = {0.0375, 0.0375, 0.001}, .mass = 0.1, .is_round = true};
+  const double lean = 30 * kDegree;
+  disc.X_WB = {exp_rotation({0, lean, 0}), {0, 0, disc.half.x() * std::sin(lean) + disc.half.z() * std::cos(lean)}};
+  scene.bodies.push_back(disc);
   return scene;
 }
 

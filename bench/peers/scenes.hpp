@@ -1,4 +1,4 @@
-// Scenes S1 to S7, tower, wall and piles: the work that every engine is given, as plain data that no engine had a say
+// Scenes S1 to S8, tower, wall and piles: the work that every engine is given, as plain data that no engine had a say
 // in.
 #pragma once
 
@@ -23,7 +23,7 @@ struct Contact {
   std::optional<double> edge_friction = std::nullopt;  ///< snug's, of edges and corners; absent: friction
 };
 
-/// A solid box of uniform density; the body frame is at its centre.
+/// A solid box (or cylinder) of uniform density; the body frame is at its centre.
 struct BoxBody {
   std::string name{};
   Vector3 half = Vector3::Constant(0.05);  ///< m
@@ -32,7 +32,11 @@ struct BoxBody {
   bool is_present = true;                  ///< false: enters with Engine::insert
   double inertia_factor = 1.0;             ///< of the moments of a solid box
   Vector3 middle = Vector3::Zero();        ///< m, of the box from its centre of mass, which is the body's frame
+  bool is_round = false;                   ///< a cylinder of radius half.x, its axis z
 };
+
+/// About its axes, kg m^2.
+[[nodiscard]] Vector3 moments_of(const BoxBody& box);
 
 /// Boxes, optionally on a plane. Fixed things (mass 0 and the plane) are the container, the others are boxes.
 struct Scene {
@@ -90,6 +94,8 @@ enum class GapVariant { A, B, C };
 
 /// S7: a flat box on a plane, mu 0.3, that slides and turns.
 [[nodiscard]] Scene turning_scene();
+/// S8: Euler's disc, leaning by 30 degrees: radius 37.5 mm, thickness 2 mm, 100 g, mu 0.6.
+[[nodiscard]] Scene disc_scene();
 /// 40 boxes of 200 x 200 x 100 mm, one on the other, on a plane.
 [[nodiscard]] Scene tower_scene();
 /// 105 bricks of 200 x 100 x 100 mm on a plane, 15 rows of 7, each row half a brick aside.

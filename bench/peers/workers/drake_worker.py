@@ -9,6 +9,7 @@ from pydrake.geometry import (
     AddContactMaterial,
     AddRigidHydroelasticProperties,
     Box,
+    Cylinder,
     ProximityProperties,
 )
 from pydrake.math import RigidTransform
@@ -44,7 +45,7 @@ class Drake(Engine):
             self.add(scene, i, body)
         if scene["plane"] is not None:
             pose = [0.0, 0.0, scene["plane"] - 0.5, 1.0, 0.0, 0.0, 0.0]
-            self.add(scene, PLANE, {"half": [5.0, 5.0, 0.5], "mass": 0, "pose": pose})
+            self.add(scene, PLANE, {"half": [5.0, 5.0, 0.5], "mass": 0, "pose": pose, "is_round": False})
         self.plant.Finalize()
         diagram = builder.Build()
         self.simulator = Simulator(diagram)
@@ -64,7 +65,7 @@ class Drake(Engine):
 
     def add(self, scene, i, body):
         half, is_box = numpy.array(body["half"]), body["mass"] > 0
-        shape = Box(*(2.0 * half))
+        shape = Cylinder(half[0], 2.0 * half[2]) if body["is_round"] else Box(*(2.0 * half))
         friction = self.friction_of(scene, is_box)
         properties = ProximityProperties()
         AddContactMaterial(
@@ -76,7 +77,11 @@ class Drake(Engine):
             else:
                 AddRigidHydroelasticProperties(0.5, properties)
         if is_box:
-            inertia = SpatialInertia.SolidBoxWithMass(body["mass"], *(2.0 * half))
+            inertia = (
+                SpatialInertia.SolidCylinderWithMass(body["mass"], half[0], 2.0 * half[2], [0, 0, 1])
+                if body["is_round"]
+                else SpatialInertia.SolidBoxWithMass(body["mass"], *(2.0 * half))
+            )
             self.bodies[i] = self.plant.AddRigidBody(f"body{i}", inertia)
             parent, pose = self.bodies[i], RigidTransform()
         else:

@@ -45,7 +45,7 @@ class Engine {
     scene.bodies.forEach((body, i) => this.add(i, body));
     if (scene.plane !== null) {
       const pose = [0, 0, scene.plane - 0.5, 1, 0, 0, 0];
-      this.add(PLANE, { half: [5, 5, 0.5], mass: 0, pose });
+      this.add(PLANE, { half: [5, 5, 0.5], mass: 0, pose, is_round: false });
     }
     this.absent = new Set(scene.bodies.flatMap((body, i) => (body.present ? [] : [i])));
     this.cpu = 0;
@@ -54,7 +54,13 @@ class Engine {
   add(i, body) {
     const is_box = body.mass > 0;
     const half = body.half;
-    const shape = new Jolt.BoxShape(new Jolt.Vec3(...half), Math.min(0.0005, Math.min(...half) / 2));
+    const rounding = Math.min(0.0005, Math.min(...half) / 2);
+    let shape = new Jolt.BoxShape(new Jolt.Vec3(...half), rounding);
+    if (body.is_round) {  // its axis is y
+      const turn = Jolt.Quat.prototype.sRotation(new Jolt.Vec3(1, 0, 0), Math.PI / 2);
+      const round = new Jolt.CylinderShapeSettings(half[2], half[0], rounding);
+      shape = new Jolt.RotatedTranslatedShapeSettings(new Jolt.Vec3(0, 0, 0), turn, round).Create().Get();
+    }
     const settings = new Jolt.BodyCreationSettings(
       shape, position(body.pose), rotation(body.pose),
       is_box ? Jolt.EMotionType_Dynamic : Jolt.EMotionType_Static, is_box ? FREE : FIXED);

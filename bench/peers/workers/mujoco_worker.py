@@ -21,7 +21,9 @@ class Mujoco(Engine):
         for i, body in enumerate(scene["bodies"]):
             is_fixed = body["mass"] == 0
             friction = scene["box_container" if is_fixed else "box_box"]["friction"]
-            shape = f'name="{i}" type="box" size="{numbers(body["half"])}" friction="{friction} 0.005 0.0001"'
+            half, kind = body["half"], "cylinder" if body["is_round"] else "box"
+            size = numbers(half[1:] if body["is_round"] else half)
+            shape = f'name="{i}" type="{kind}" size="{size}" friction="{friction} 0.005 0.0001"'
             place = f'pos="{numbers(body["pose"][:3])}" quat="{numbers(body["pose"][3:])}"'
             if is_fixed:
                 fixed.append(f'<geom {shape} {place} priority="1"/>')

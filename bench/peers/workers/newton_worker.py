@@ -24,7 +24,7 @@ class Newton(Engine):
             self.add(builder, scene, i, body)
         if scene["plane"] is not None:
             pose = [0.0, 0.0, scene["plane"] - 0.5, 1.0, 0.0, 0.0, 0.0]
-            self.add(builder, scene, PLANE, {"half": [5.0, 5.0, 0.5], "mass": 0, "pose": pose})
+            self.add(builder, scene, PLANE, {"half": [5.0, 5.0, 0.5], "mass": 0, "pose": pose, "is_round": False})
         self.model = builder.finalize(device="cpu")
         config = newton.solvers.SolverKamino.Config.from_model(self.model, dynamics_solver=self.options.solver)
         config.use_collision_detector = False
@@ -54,7 +54,11 @@ class Newton(Engine):
             settings.density = body["mass"] / (8.0 * half[0] * half[1] * half[2])
             parent, place = builder.add_body(xform=pose), warp.transform_identity()
             self.body[i] = parent
-        builder.add_shape_box(parent, xform=place, hx=half[0], hy=half[1], hz=half[2], cfg=settings)
+        if body["is_round"]:
+            settings.density *= 4.0 / numpy.pi
+            builder.add_shape_cylinder(parent, xform=place, radius=half[0], half_height=half[2], cfg=settings)
+        else:
+            builder.add_shape_box(parent, xform=place, hx=half[0], hy=half[1], hz=half[2], cfg=settings)
 
     def read(self):
         self.q, self.qd = self.state.body_q.numpy().copy(), self.state.body_qd.numpy().copy()

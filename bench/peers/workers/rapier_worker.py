@@ -25,7 +25,7 @@ class Rapier(Engine):
             self.add(scene, i, body)
         if scene["plane"] is not None:
             pose = [0.0, 0.0, scene["plane"] - 0.5, 1.0, 0.0, 0.0, 0.0]
-            self.add(scene, PLANE, {"half": [5.0, 5.0, 0.5], "mass": 0, "pose": pose})
+            self.add(scene, PLANE, {"half": [5.0, 5.0, 0.5], "mass": 0, "pose": pose, "is_round": False})
 
     def add(self, scene, i, body):
         # Rapier multiplies the values of both: a box gets the root of the box-box value.
@@ -33,7 +33,12 @@ class Rapier(Engine):
         for kind in ("friction", "restitution"):
             root = math.sqrt(scene["box_box"][kind])
             factors[kind] = root if body["mass"] > 0 else scene["box_container"][kind] / root if root > 0 else 0.0
-        shape = rapier.Collider.cuboid(*body["half"])
+        half = body["half"]
+        if body["is_round"]:  # its axis is y
+            turn = rapier.Rotation3.from_scaled_axis(rapier.Vec3(math.pi / 2, 0.0, 0.0))
+            shape = rapier.Collider.cylinder(half[2], half[0]).position(rapier.Isometry3(rapier.Vec3(0.0, 0.0, 0.0), turn))
+        else:
+            shape = rapier.Collider.cuboid(*half)
         shape = shape.friction(factors["friction"]).restitution(factors["restitution"])
         shape = shape.friction_combine_rule(MULTIPLY).restitution_combine_rule(MULTIPLY)
         if body["mass"] > 0:
