@@ -55,14 +55,14 @@ TEST_P(EveryAgent, StaysOverTheSlabOfAPallet) {
   test::expect_sound(state, 0.0, PackingSettings().min_support);  // nothing gives way: nothing holds it from the side
 }
 
-/// Least distance of a box from an edge, m, and how many are in a layer; cartons of 600 x 400 mm alone.
-std::pair<double, int> pack_cartons(double length, double width) {
+/// Least distance of a box from an edge, m, and how many are in a layer.
+std::pair<double, int> pack_layer(double length, double width, const std::vector<Vector3>& sizes) {
   ContainerState state;
   state.inner_size = Vector3(length, width, 0.3);
   state.has_walls = false;
   std::vector<Item> cartons;
-  for (int i = 0; i < 8; ++i) {
-    cartons.push_back(make_box("C" + std::to_string(i), {0.6, 0.4, 0.3}));
+  for (const Vector3& size : sizes) {
+    cartons.push_back(make_box("C" + std::to_string(cartons.size()), size));
     cartons.back().upright_only = true;
   }
   const FutureModel future{cartons, std::vector<double>(cartons.size(), 1.0), true};
@@ -80,6 +80,10 @@ std::pair<double, int> pack_cartons(double length, double width) {
   return {rim, static_cast<int>(state.boxes.size())};
 }
 
+std::pair<double, int> pack_cartons(double length, double width) {
+  return pack_layer(length, width, std::vector<Vector3>(8, {0.6, 0.4, 0.3}));
+}
+
 TEST(ContactAwareAgent, LeavesTheRimOfAPalletFreeWhereNoRowReachesAcrossIt) {
   const auto [rim, count] = pack_cartons(1.23, 1.03);
   EXPECT_NEAR(rim, 0.003, 1e-4) << "30 mm are left of either length: 3 mm at most";
@@ -90,6 +94,15 @@ TEST(ContactAwareAgent, LeavesTheRimOfAPalletFreeWhereNoRowReachesAcrossIt) {
   const auto [narrow_rim, same] = pack_cartons(1.208, 0.808);
   EXPECT_NEAR(narrow_rim, 0.002, 1e-4) << "a quarter of 8 mm";
   EXPECT_EQ(same, 4);
+}
+
+TEST(ContactAwareAgent, LeavesTheRimOfAPalletFreeWhereBoxesHaveManySizes) {
+  // 530 + 490 + 210 and 400 + 330 + 300 mm reach across; rows of 1210 and 1010 mm do for nearly as many boxes.
+  const std::vector<Vector3> sizes{{0.53, 0.40, 0.3}, {0.49, 0.33, 0.3}, {0.40, 0.30, 0.3}, {0.36, 0.21, 0.3},
+                                   {0.47, 0.25, 0.3}, {0.44, 0.27, 0.3}, {0.32, 0.22, 0.3}, {0.37, 0.28, 0.3}};
+  const auto [rim, count] = pack_layer(1.23, 1.03, sizes);
+  EXPECT_GE(rim, 0.003 - 1e-4);
+  EXPECT_GE(count, 6);
 }
 
 TEST(ContactAwareAgent, FillsAPalletLayerByLayer) {

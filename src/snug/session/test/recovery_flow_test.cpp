@@ -216,6 +216,15 @@ TEST(RecoveryFlow, ItemsWithoutAPlaceAreSkippedAsManyAsMayBe) {
   }
 }
 
+TEST(RecoveryFlow, WithSkipsForAllItemsAnOrderIsPackedAsFarAsItFits) {
+  ScriptedPlant plant;
+  plant.obstacles = full_container();
+  const SessionResult result = pack_items(plant, 2, [](auto& scenario) { scenario.recovery.skips = 1000; });
+  EXPECT_EQ(result.items.size(), 2U);
+  EXPECT_EQ(result.stop_reason, StopReason::NoMoreItems);
+  EXPECT_FALSE(result.failure);
+}
+
 TEST(RecoveryFlow, AnItemThatFitsNowhereEverUsesUpNoSkip) {
   ScriptedPlant plant;
   SessionOptions options = quick_options();
