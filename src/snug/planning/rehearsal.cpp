@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "snug/core/parallel.hpp"
+#include "snug/packing/load_check.hpp"
 #include "snug/spatial/matrix6.hpp"
 
 namespace snug::planning {
@@ -118,11 +119,15 @@ Rehearsal::Outcome Rehearsal::judge(const Rollout& rollout, const std::vector<st
     return outcome;
   }
   const Pose X_TP_is = X_TW * *X_WP;
+  // What sticks out more would be rejected with the finished load.
+  const auto is_in = [](const cell::ContainerFit& fit) {
+    return fit.is_in && fit.above_rim <= packing::LoadLimits{}.above;
+  };
   const cell::ContainerFit fit = fit_of(box_.item, *X_WP);
   const double off = level_distance(X_TP_is, X_TP), turned = angle_between(X_TP_is.R, X_TP.R);
   if (rollout.is_held(box_.item)) {
     fail(AttemptFailure::SticksOut, "it still hangs from the cup");
-  } else if (!fit.is_in) {
+  } else if (!is_in(fit)) {
     fail(AttemptFailure::SticksOut, describe_outside(fit, is_beside(inner, X_TP_is.p), off));
   }
   if (off > cell_.limits.position) fail(AttemptFailure::OffPlace, fmt::format("{:.0f} mm from its place", 1e3 * off));
@@ -136,7 +141,7 @@ Rehearsal::Outcome Rehearsal::judge(const Rollout& rollout, const std::vector<st
     const std::optional<Pose> after = rollout.pose_of(item);
     if (after) outcome.forces.displacement = std::max(outcome.forces.displacement, (after->p - before[i]->p).norm());
     if (after) tipped = std::max(tipped, packing::lean_of(after->R) - packing::lean_of(before[i]->R));
-    if (fit_of(item, *before[i]).is_in && !(after && fit_of(item, *after).is_in)) {
+    if (is_in(fit_of(item, *before[i])) && !(after && is_in(fit_of(item, *after)))) {
       fail(AttemptFailure::OthersCameOut, "another box would come out of the container");
     }
   }

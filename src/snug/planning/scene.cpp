@@ -6,6 +6,7 @@
 
 #include "snug/cell/drawn_scenario.hpp"
 #include "snug/cell/joint_pace.hpp"
+#include "snug/packing/load_check.hpp"
 #include "snug/skills/primitives.hpp"
 
 namespace snug::planning {
@@ -36,6 +37,12 @@ CellPlan make_cell_plan(const model::Scenario& scenario, const motion::Tracking&
   cell.layout.is_fast = motion::is_fast(tracking);
   if (!cell.layout.is_fast) cell.limits.hold_factor = cell.limits.hold_guard = 0.0;
   return cell;
+}
+
+Matrix3 rotation_at_aligner(const Scene& scene, model::ItemIndex item) {
+  const Matrix3& R_WA = scene.rules().aligner->X_WA.R;
+  const Matrix3& R_WP = scene.X_WP(item).R;
+  return R_WA * packing::rotation(packing::nearest_orientation(R_WA.transpose() * skills::leveling(R_WP) * R_WP));
 }
 
 double slack_of(const BelievedBox& box) { return 2.0 * std::sqrt(std::max(0.0, box.covariance(0, 0))); }
@@ -127,6 +134,12 @@ bool Scene::is_seen_outside(model::ItemIndex item) const {
   const cell::ContainerFit fit = fit_of(item);
   return locate(item) != Location::Container || fit.outside > cell::kPackedBeyondWall + slack ||
          fit.above_rim > cell::kPackedAboveRim + slack;
+}
+
+bool Scene::is_seen_sticking_out(model::ItemIndex item) const {
+  if (is_seen_outside(item)) return true;
+  return box(item) && box(item)->was_seen &&
+         fit_of(item).above_rim > packing::LoadLimits{}.above + slack_of(*box(item));
 }
 
 bool Scene::is_under_obstacle(model::ItemIndex item) const {

@@ -51,6 +51,8 @@ struct Scene {
   [[nodiscard]] cell::ContainerFit fit_of(model::ItemIndex item) const;
   /// It is seen over the rim, beyond a wall, or not in the container at all. Of a box that is gone: false.
   [[nodiscard]] bool is_seen_outside(model::ItemIndex item) const;
+  /// The same, or it is seen over the rim by more than a box of a finished load may stand.
+  [[nodiscard]] bool is_seen_sticking_out(model::ItemIndex item) const;
   /// An obstacle lies on the box: it is neither picked nor pressed on.
   [[nodiscard]] bool is_under_obstacle(model::ItemIndex item) const;
   /// Another box stands on it: the tool would have to go through that one.
@@ -71,6 +73,9 @@ struct Scene {
   [[nodiscard]] std::vector<packing::Extent> obstacle_extents() const;
 };
 
+/// How a box that lies, leans or hangs is put down to the aligner or on the bench: on the face that is nearest to
+/// below.
+[[nodiscard]] Matrix3 rotation_at_aligner(const Scene& scene, model::ItemIndex item);
 /// In T, from W: the level box around.
 [[nodiscard]] geometry::Aabb in_container(const Pose& X_WT, const geometry::Aabb& region);
 /// Two standard deviations of where the box was seen, m.

@@ -44,8 +44,10 @@ struct ItemTask {
   OperatorOrder asked_by;                          ///< its order
   std::vector<packing::Placement> refused_places;  ///< by the operator
   bool is_held = false;                            ///< by the operator
+  std::optional<model::ItemIndex> brings_back;     ///< a box that waited on the bench and is packed now
   std::optional<planning::Room> room;              ///< a move of another box, after which this one has a place
-  bool has_made_room = false;                      ///< such a move was begun
+  int rooms = 0;                                   ///< such moves that were begun
+  std::optional<planning::Aside> aside;            ///< a box that waits on the bench until this item is done with
   RecoveryTask recovery;
   ItemEnd end = ItemEnd::NoPlace;
   std::string reason;
@@ -62,6 +64,7 @@ struct Agenda {
   std::string order_ends;                ///< why an agent that plans the whole sequence left off; empty: it did not
   std::set<model::ItemIndex> left_out;   ///< they stick out and nothing more is done about them
   std::set<model::ItemIndex> returned;   ///< packed before, and returned to the aligner
+  std::set<model::ItemIndex> pressed;    ///< from above, since they were sent last
 
   [[nodiscard]] ItemTask& top() { return under_way.back(); }
   [[nodiscard]] const ItemTask& top() const { return under_way.back(); }

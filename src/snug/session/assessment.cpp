@@ -53,7 +53,7 @@ Trouble trouble_of(plant::EndReason reason) {
 std::optional<model::ItemIndex> find_sticking_out(const planning::Scene& scene, const Agenda& agenda,
                                                   model::ItemIndex item) {
   const auto is_out = [&](model::ItemIndex one) {
-    return !agenda.left_out.contains(one) && scene.is_seen_outside(one);
+    return !agenda.left_out.contains(one) && scene.is_seen_sticking_out(one);
   };
   for (const model::ItemIndex other : scene.belief.sent) {
     if (agenda.is_under_way(other) || !scene.box(other)) continue;

@@ -289,11 +289,13 @@ struct Repacked {
   model::ItemIndex item;
   packing::Placement planned;
   Pose X_TP;
+  std::optional<model::ItemIndex> room_for;  ///< item that has its place because of it; none: of a recovery
   template <class Archive>
   void fields(Archive& a) {
     a("item", item);
     a("planned", planned);
     a("X_TP", X_TP);
+    a("room_for", room_for);
   }
 };
 

@@ -178,7 +178,7 @@ void ResultFold::add(const SessionEvent& one) {
     dropped_wait_ += dropped->waited;
   } else if (const auto* again = std::get_if<event::Repacked>(&one)) {
     repacked_.push_back(*again);
-    if (!open_.empty() && open_.back().sends.empty()) open_.back().made_room = again->planned;
+    if (!open_.empty() && again->room_for) open_.back().made_room.push_back(again->planned);
   } else if (const auto* counted = std::get_if<event::Counted>(&one)) {
     result_.planned_percent = counted->planned_percent;
     result_.duration = counted->time;

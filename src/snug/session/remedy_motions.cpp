@@ -15,6 +15,7 @@ namespace snug::session {
 namespace {
 
 using motion::MotionClass;
+using planning::rotation_at_aligner;
 using planning::Scene;
 
 /// Straight up from where the tool is, with the held box.
@@ -47,6 +48,17 @@ std::vector<motion::Waypoint> plan_pick_to_return(const Scene& scene, model::Ite
   if (planning::is_upright(X_WP.R, scene.rules().skills.pick.max_lean))
     return plan_pick(nominal, scene.cell.layout, box, X_WP, X_WP_next, travel, skills::PickKind::FromAfar);
   return plan_leaning_pick(nominal, scene.cell.layout, box, X_WP, X_WP_next, travel);
+}
+
+/// Picked where it lies or leans, and put down at `place` like R_WP.
+std::vector<motion::Waypoint> plan_move(const Scene& scene, const plant::Feedback& robot, model::ItemIndex item,
+                                        const Matrix3& R_WP, const skills::FlipPlace& place) {
+  std::vector<motion::Waypoint> pick = plan_pick_to_return(scene, item, R_WP);
+  const auto onto = std::ranges::find(pick, MotionClass::RePick, &motion::Waypoint::motion_class);
+  const Pose X_ES{Matrix3::Identity(), cup::pick_length(scene.rules().cup) * Vector3::UnitZ()};
+  const Carried picked{item, scene.planned_box(item), R_WP, scene.X_WP(item).inverse() * onto->X_WE * X_ES,
+                       std::nullopt};
+  return plan_put_down(scene, robot, picked, place, std::move(pick));
 }
 
 /// Beside the aligner's corner, on what holds boxes there.
@@ -108,12 +120,6 @@ double hanging_below(const Scene& scene, const plant::Feedback& robot, const Car
 
 }  // namespace
 
-Matrix3 rotation_at_aligner(const Scene& scene, model::ItemIndex item) {
-  const Matrix3& R_WA = scene.rules().aligner->X_WA.R;
-  const Matrix3& R_WP = scene.X_WP(item).R;
-  return R_WA * packing::rotation(packing::nearest_orientation(R_WA.transpose() * skills::leveling(R_WP) * R_WP));
-}
-
 std::vector<motion::Waypoint> plan_retreat(const Scene& scene, const plant::Feedback& robot, const std::string& id) {
   motion::Waypoint up = motion::make_waypoint(MotionClass::PostPlace, id, robot.X_WE, {}, "_retreat");
   const double over = scene.rules().cup.free_length + scene.rules().skills.travel.retreat;
@@ -135,15 +141,24 @@ std::vector<motion::Waypoint> plan_to_bench(const Scene& scene, const plant::Fee
 
 std::vector<motion::Waypoint> plan_return(const Scene& scene, const plant::Feedback& robot, model::ItemIndex item,
                                           const std::optional<Carried>& held) {
-  const skills::PlannedBox box = scene.planned_box(item);
   const Matrix3 R_WP = held ? held->R_WP : rotation_at_aligner(scene, item);
   const skills::FlipPlace place = place_at_aligner(scene, item, R_WP);
   if (held) return plan_put_down(scene, robot, *held, place, {plan_lift(scene, robot, *held)});
-  std::vector<motion::Waypoint> pick = plan_pick_to_return(scene, item, R_WP);
-  const auto onto = std::ranges::find(pick, MotionClass::RePick, &motion::Waypoint::motion_class);
-  const Pose X_ES{Matrix3::Identity(), cup::pick_length(scene.rules().cup) * Vector3::UnitZ()};
-  const Carried picked{item, box, R_WP, scene.X_WP(item).inverse() * onto->X_WE * X_ES, std::nullopt};
-  return plan_put_down(scene, robot, picked, place, std::move(pick));
+  return plan_move(scene, robot, item, R_WP, place);
+}
+
+std::vector<motion::Waypoint> plan_take_out(const Scene& scene, const plant::Feedback& robot, model::ItemIndex item) {
+  const Matrix3 R_WP = rotation_at_aligner(scene, item);
+  const std::optional<skills::FlipPlace>& bench = scene.cell.layout.flip_place;
+  if (!bench || scene.is_under_obstacle(item) || scene.is_under_box(item)) return {};
+  if (!is_free(scene, item, *bench, R_WP)) return {};
+  std::vector<motion::Waypoint> waypoints = plan_move(scene, robot, item, R_WP, *bench);
+  const planning::ToolReach& reaches = scene.cell.reaches;
+  const bool can = !reaches || std::ranges::all_of(waypoints, [&](const motion::Waypoint& one) {
+    return reaches({one.X_WE, one.X_WE});
+  });
+  if (!can) return {};
+  return waypoints;
 }
 
 std::vector<std::vector<motion::Waypoint>> plan_put_aside(const Scene& scene, const plant::Feedback& robot,

@@ -22,8 +22,6 @@ struct Carried {
 /// Lets go where the tool is, then straight up over everything.
 [[nodiscard]] std::vector<motion::Waypoint> plan_retreat(const planning::Scene& scene, const plant::Feedback& robot,
                                                          const std::string& id);
-/// How a box that lies, leans or hangs is put down to the aligner: on the face that is nearest to below.
-[[nodiscard]] Matrix3 rotation_at_aligner(const planning::Scene& scene, model::ItemIndex item);
 /// Presses on the box from above where it is believed to be, the vacuum off.
 [[nodiscard]] std::vector<motion::Waypoint> plan_press_on(const planning::Scene& scene, model::ItemIndex item);
 /// The held box straight up and to the flat surface where boxes are turned, which the cell has.
@@ -32,6 +30,10 @@ struct Carried {
 /// The box back to the aligner: `held` as it hangs, or picked where it lies or leans.
 [[nodiscard]] std::vector<motion::Waypoint> plan_return(const planning::Scene& scene, const plant::Feedback& robot,
                                                         model::ItemIndex item, const std::optional<Carried>& held);
+/// The box picked where it lies or leans, and put on the flat surface where boxes are turned. Empty: the cell has none,
+/// another box stands there, something stands on the box, or the tool does not reach it.
+[[nodiscard]] std::vector<motion::Waypoint> plan_take_out(const planning::Scene& scene, const plant::Feedback& robot,
+                                                          model::ItemIndex item);
 /// Ways to put down what hangs from the cup where it can be picked again, the best first: at the aligner, or on the
 /// flat surface where boxes are turned, where no other box stands; with the tool over it, or as it hangs; turned about
 /// the vertical so that the arm reaches every waypoint. `X_PS`: lip on it. Empty: there is none.

@@ -43,8 +43,13 @@ std::string describe(const ItemReport& item) {
 }
 
 std::string describe_room(const ItemReport& item) {
-  const Vector3 p = 1e3 * item.made_room->X_TP.p;
-  return fmt::format("{} moved to ({:.0f}, {:.0f}, {:.0f}) mm to make room", item.made_room->item, p.x(), p.y(), p.z());
+  std::string text;
+  for (const packing::Placement& one : item.made_room) {
+    const Vector3 p = 1e3 * one.X_TP.p;
+    text += fmt::format("{}{} moved to ({:.0f}, {:.0f}, {:.0f}) mm", text.empty() ? "" : ", ", one.item, p.x(), p.y(),
+                        p.z());
+  }
+  return text + " to make room";
 }
 
 std::string describe(const OperatorStep& step) {

@@ -27,7 +27,7 @@ enum class ItemEnd {
   NotBrought,  ///< the plant did not bring it
   Rejected,    ///< it lies in the container, but not as a box of a finished load has to
   Skipped,     ///< the operator did not want it packed
-  TakenOut,    ///< it was packed, and the operator had it taken out
+  TakenOut,  ///< it was packed, and was taken out: the operator asked, or the finished load is accepted only without it
 };
 [[nodiscard]] const char* name_of(ItemEnd end);
 
@@ -86,7 +86,7 @@ struct ItemReport {
   double position_error = 0.0;        ///< m, level, as it was seen
   double angle_error = 0.0;           ///< rad
   std::vector<Send> sends;
-  std::optional<packing::Placement> made_room;  ///< of a box that was packed before: moved there, so that this one fits
+  std::vector<packing::Placement> made_room;  ///< of boxes that were packed before: moved there, so that this one fits
   std::vector<Recovery> recoveries;
   std::vector<OperatorStep> operator_steps;
   double decision_seconds = 0.0;  ///< wall clock, of the agent alone

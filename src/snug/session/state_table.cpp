@@ -32,6 +32,7 @@ constexpr std::array kTransitions{
     Transition{State::AskOperator, Signal::Skip, State::PutBack},
     Transition{State::AskOperator, Signal::Stopped, State::FinishItem},
     Transition{State::MakeRoom, Signal::Started, State::Plan},
+    Transition{State::MakeRoom, Signal::ToBePlannedAnew, State::Plan},
     Transition{State::MakeRoom, Signal::NoPlace, State::PutBack},
     Transition{State::PutBack, Signal::Finished, State::FinishItem},
     Transition{State::Send, Signal::Started, State::Moving},
@@ -70,8 +71,10 @@ constexpr std::array kTransitions{
     Transition{State::Repack, Signal::Started, State::Plan},
     Transition{State::FinishItem, Signal::Finished, State::NextItem},
     Transition{State::FinishItem, Signal::NextOnAgenda, State::ResumeItem},
+    Transition{State::FinishItem, Signal::RepackOther, State::Repack},
     Transition{State::ResumeItem, Signal::Finished, State::Assess},
     Transition{State::ResumeItem, Signal::ToBePlannedAnew, State::Plan},
+    Transition{State::ResumeItem, Signal::InPlace, State::FinishItem},
     Transition{State::GoHome, Signal::Finished, State::Done},
 };
 

@@ -28,6 +28,12 @@ std::vector<std::string> counted_boxes(const std::vector<cell::BoxResult>& boxes
 
 namespace {
 
+bool was_taken_out(const cell::BoxResult& box, const session::SessionResult& session) {
+  return std::ranges::any_of(session.items, [&](const session::ItemReport& item) {
+    return item.id == box.id && item.end == session::ItemEnd::TakenOut;
+  });
+}
+
 class Scorer {
  public:
   Scorer(const model::Scenario& scenario, const settings::PlaceLimits& limits, const Witness& witness)
@@ -57,7 +63,8 @@ class Scorer {
     trial.executed_boxes = trial.boxes_lost = trial.items_sent = trial.items_as_planned = 0;
     const std::vector<std::string> packed = counted_boxes(trial.boxes, trial.session);
     for (const cell::BoxResult& box : trial.boxes) {
-      if (box.state != cell::BoxState::Packed && box.state != cell::BoxState::Waiting) ++trial.boxes_lost;
+      const bool is_where_it_should = box.state == cell::BoxState::Packed || box.state == cell::BoxState::Waiting;
+      if (!is_where_it_should && !was_taken_out(box, trial.session)) ++trial.boxes_lost;
     }
     trial.executed_boxes = static_cast<int>(packed.size());
     trial.executed_percent = model::compute_filling_degree_percent(scenario_, container_, packed);
@@ -103,9 +110,12 @@ class Scorer {
     for (std::size_t i = 0; i < now.size(); ++i) {
       if (i == own || !before_[i] || !is_in(i, *before_[i])) continue;
       others_stay = others_stay && now[i] && is_in(i, *now[i]);
-      if (now[i] && report.made_room && report.made_room->item == witness_.items[i])
-        item.displacement = std::max(item.displacement, off_place(in_container(*now[i]), *report.made_room));
-      else if (now[i])
+      if (!now[i]) continue;
+      const auto moved = std::ranges::find(report.made_room.rbegin(), report.made_room.rend(), witness_.items[i],
+                                           &packing::Placement::item);
+      if (moved != report.made_room.rend())
+        item.displacement = std::max(item.displacement, off_place(in_container(*now[i]), *moved));
+      else
         item.displacement = std::max(item.displacement, (now[i]->p - before_[i]->p).norm());
     }
     if (!now[own]) return;
@@ -249,7 +259,7 @@ std::vector<record::Event> events_of(const session::SessionResult& result) {
     if (item.sends.empty() && !item.is_packed()) {
       events.push_back({item.done, "refused", item.id, session::describe(item), {}});
     }
-    if (item.made_room) events.push_back({item.begin, "room", item.id, session::describe_room(item), {}});
+    if (!item.made_room.empty()) events.push_back({item.begin, "room", item.id, session::describe_room(item), {}});
     for (const session::Send& send : item.sends) {
       const Vector3 p = 1e3 * send.planned.X_TP.p;
       events.push_back({send.time,

@@ -129,7 +129,7 @@ Json as_json(const session::ItemReport& item, const study::TrueItem& truth) {
     json["joint_acceleration_share"] = motion.joint_acceleration;
     json["sends"] = sends_as_json(item, truth);
   }
-  if (item.made_room) json["made_room"] = as_json(*item.made_room);
+  for (const packing::Placement& one : item.made_room) json["made_room"].push_back(as_json(one));
   if (!item.sends.empty() || !item.recoveries.empty()) json["recoveries"] = recoveries_as_json(item.recoveries);
   if (!item.operator_steps.empty()) json["operator"] = steps_as_json(item.operator_steps);
   json["seconds"] = as_json(item.seconds);
@@ -264,7 +264,7 @@ std::string format_item(const session::ItemReport& item, const study::TrueItem& 
         item.seconds.wait,
         item.end == session::ItemEnd::Placed ? std::string() : fmt::format("  {}", session::name_of(item.end)));
   }
-  if (item.made_room) text += "         " + session::describe_room(item) + "\n";
+  if (!item.made_room.empty()) text += "         " + session::describe_room(item) + "\n";
   for (const session::OperatorStep& one : item.operator_steps) {
     text += fmt::format("         at {:.1f} s operator: {}\n", one.time, describe(one));
   }

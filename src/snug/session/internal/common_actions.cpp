@@ -96,6 +96,17 @@ void retreat(Run& run, model::ItemIndex item) {
   }
 }
 
+void press_on(Run& run, model::ItemIndex item) {
+  run.agenda.pressed.insert(item);
+  run.executor.run({item,
+                    run.belief.now().items[item.slot()].id,
+                    plan_press_on(run.scene(), item),
+                    {run.belief.now().scenario.skills.press.force, false},
+                    {}});
+  // The force that ends a press is what was asked for.
+  if (run.executor.robot().end.reason == plant::EndReason::ForceGuard) retreat(run, item);
+}
+
 void move_home(Run& run) {
   run.executor.run({{}, {}, plan_home(run.scene(), run.executor.robot()), {std::nullopt, false}, {}});
 }
@@ -139,7 +150,14 @@ void give_up(Run& run, Trouble trouble) {
   ItemTask& task = run.agenda.top();
   const bool is_gone = !run.belief.box(task.item) || trouble == Trouble::Gone;
   const bool is_waiting = !is_gone && run.scene().locate(task.item) == planning::Location::Aligner;
-  end_item(task, is_gone ? ItemEnd::Gone : is_waiting ? ItemEnd::NotHeld : ItemEnd::Left, name_of(trouble));
+  // What sticks out by little may be mended in the end, when the finished load is judged.
+  const bool is_in = trouble == Trouble::SticksOut && !is_gone && run.scene().fit_of(task.item).is_in;
+  end_item(task,
+           is_gone      ? ItemEnd::Gone
+           : is_waiting ? ItemEnd::NotHeld
+           : is_in      ? ItemEnd::Accepted
+                        : ItemEnd::Left,
+           name_of(trouble));
 }
 
 void leave(Run& run) {

@@ -52,10 +52,13 @@ void begin_item(Run& run, model::ItemIndex item, std::optional<model::ItemIndex>
   run.log(event::ItemStarted{task.begun, item, because_of});
 }
 
-/// For an item that is at the aligner for the first time, once.
+constexpr int kMostRooms = 3;  ///< boxes that move for an item without which the session ends
+
+/// For an item that is at the aligner for the first time: once, or more often where the session ends without it.
 bool may_make_room(const Run& run) {
   const ItemTask& task = run.agenda.top();
-  return run.agenda.under_way.size() == 1 && task.sends == 0 && !task.has_made_room;
+  const int most = run.belief.now().skips_left <= 0 ? kMostRooms : 1;
+  return run.agenda.under_way.size() == 1 && task.sends == 0 && !task.aside && task.rooms < most;
 }
 
 /// The plan that was made ahead, or one that is made now.
@@ -67,6 +70,10 @@ Decided decide(Run& run) {
   belief.robot = {robot.X_WE, robot.q, robot.io};
   belief.next = run.agenda.follower_of(task.item);
   if (task.asked_place) return run.decisions.decide_at(belief, task.item, *task.asked_place);
+  if (task.aside && task.sends == 0) {  // so that both have a place
+    Decided there = run.decisions.decide_at(belief, task.item, task.aside->item);
+    if (there.plan.best) return there;
+  }
   return run.decisions.decide(belief, task.item, may_make_room(run));
 }
 
@@ -136,13 +143,14 @@ packing::Give give_of(const model::Scenario& scenario, const packing::ContainerS
   return softest;
 }
 
-/// The load as it is seen when the robot stands at its start: what does not lie as a finished load has to is not
-/// packed. `before`: where boxes were believed to be before the robot went there, which takes a second and touches
-/// nothing.
-void check_load(Run& run, const std::vector<std::optional<Pose>>& before) {
-  if (run.agenda.packed.empty()) return;
+using Findings = std::map<model::ItemIndex, std::string>;
+
+/// What does not lie as in a finished load, of the boxes that are packed, as the load is seen when the robot stands at
+/// its start. `before`: where boxes were believed to be before the robot went there, which takes a second and touches
+/// nothing. None: nothing is seen.
+std::optional<Findings> judge_load(Run& run, const std::vector<std::optional<Pose>>& before) {
   const perception::Observation seen = run.executor.perceive(run.belief.expectations());
-  if (seen.fault != perception::LookFault::None) return;
+  if (seen.fault != perception::LookFault::None) return std::nullopt;
   run.belief.see(seen);
   run.belief.forget_let_go();
   review(run);
@@ -159,20 +167,87 @@ void check_load(Run& run, const std::vector<std::optional<Pose>>& before) {
   for (const packing::LoadFinding& one : packing::check_finished_load(load, limits, doubts_of(run, load))) {
     reasons.emplace(one.item, packing::describe(one));
   }
+  Findings findings;
   for (const model::ItemIndex item : run.agenda.packed) {
     const auto& box = scene.box(item);
-    if (!box || !box->was_seen || !before[item.slot()]) continue;
-    const double moved = (box->X_WP.p - before[item.slot()]->p).norm() - planning::slack_of(*box);
-    if (moved <= kStill) continue;
-    reasons.emplace(scene.belief.items[item.slot()].id, fmt::format("still moves ({:.0f} mm)", 1e3 * moved));
-  }
-  std::erase_if(run.agenda.packed, [&](model::ItemIndex item) {
+    if (!box || !box->was_seen) continue;
     const auto found = reasons.find(scene.belief.items[item.slot()].id);
-    const auto& box = scene.box(item);
-    if (found == reasons.end() || !box || !box->was_seen) return false;
-    run.log(event::ItemLost{item, ItemEnd::Rejected, found->second});
+    if (found != reasons.end()) findings.emplace(item, found->second);
+    if (!before[item.slot()]) continue;
+    const double moved = (box->X_WP.p - before[item.slot()]->p).norm() - planning::slack_of(*box);
+    if (moved > kStill) findings.emplace(item, fmt::format("still moves ({:.0f} mm)", 1e3 * moved));
+  }
+  return findings;
+}
+
+/// The robot goes to its start, and the load is judged. None: it is not there, or sees nothing.
+std::optional<Findings> go_home_and_judge(Run& run) {
+  const std::vector<std::optional<Pose>> before = run.scene().believed_poses();
+  move_home(run);
+  if (!run.executor.has_completed() || run.agenda.packed.empty()) return std::nullopt;
+  return judge_load(run, before);
+}
+
+/// What is seen now is believed, if anything is.
+void look(Run& run) {
+  const perception::Observation seen = run.executor.perceive(run.belief.expectations());
+  if (seen.fault == perception::LookFault::None) run.belief.see(seen);
+  run.belief.forget_let_go();
+}
+
+/// Each that nothing stands on and that was not pressed before; true: something was pressed.
+bool press_all(Run& run, const Findings& findings) {
+  bool has_pressed = false;
+  for (const auto& [item, reason] : findings) {
+    const planning::Scene scene = run.scene();
+    if (!scene.box(item) || run.agenda.pressed.contains(item)) continue;
+    if (scene.is_under_box(item) || scene.is_under_obstacle(item)) continue;
+    if (scene.locate(item) != planning::Location::Container) continue;
+    press_on(run, item);
+    has_pressed = true;
+    if (!run.executor.has_completed()) break;
+  }
+  if (has_pressed) look(run);
+  return has_pressed;
+}
+
+/// The first that can be: to the bench, where it is no part of the load. True: the robot moved for it.
+bool take_one_out(Run& run, const Findings& findings) {
+  for (const auto& [item, reason] : findings) {
+    const planning::Scene scene = run.scene();
+    if (!scene.box(item) || scene.locate(item) != planning::Location::Container) continue;
+    std::vector<motion::Waypoint> waypoints = plan_take_out(scene, run.executor.robot(), item);
+    if (waypoints.empty()) continue;
+    const std::string& id = scene.belief.items[item.slot()].id;
+    run.belief.doubt_prediction();
+    run.belief.let_go(item);
+    run.executor.run({item, id, std::move(waypoints), {run.cell.limits.force, true}, {}});
+    if (!run.executor.has_completed()) retreat(run, item);
+    look(run);
+    const bool is_out = run.belief.box(item) && run.scene().locate(item) == planning::Location::Bench;
+    if (is_out) {
+      std::erase(run.agenda.packed, item);
+      run.log(event::ItemLost{item, ItemEnd::TakenOut, reason + ": it is put on the bench"});
+    }
     return true;
-  });
+  }
+  return false;
+}
+
+/// The robot to its start. What of the load is not as in a finished one is pressed, then taken out; what cannot be
+/// mended so is not packed.
+void finish_load(Run& run) {
+  std::optional<Findings> findings = go_home_and_judge(run);
+  const bool may_move =
+      run.stop != StopReason::Interrupted && run.stop != StopReason::PlantFault && run.stop != StopReason::RobotStops;
+  for (const auto& mend : {press_all, take_one_out}) {
+    if (!may_move || !findings || findings->empty() || !mend(run, *findings)) continue;
+    if (auto again = go_home_and_judge(run)) findings = std::move(again);  // else it is as it was
+  }
+  if (!findings) return;
+  for (const auto& [item, reason] : *findings) {
+    if (std::erase(run.agenda.packed, item) > 0) run.log(event::ItemLost{item, ItemEnd::Rejected, reason});
+  }
 }
 
 bool is_taken_away(ItemEnd end) {
@@ -291,10 +366,30 @@ Signal plan_item(Run& run) {
   return Signal::NoPlace;
 }
 
+namespace {
+
+/// The box to the bench, from where it is picked when the item stands.
+Signal put_aside(Run& run, const planning::Aside& aside) {
+  const planning::Scene scene = run.scene();
+  std::vector<motion::Waypoint> waypoints = plan_take_out(scene, run.executor.robot(), aside.box);
+  if (waypoints.empty()) return Signal::NoPlace;
+  const std::string& id = scene.belief.items[aside.box.slot()].id;
+  run.belief.doubt_prediction();
+  run.belief.let_go(aside.box);
+  run.executor.run({aside.box, id, std::move(waypoints), {run.cell.limits.force, true}, {}});
+  if (!run.executor.has_completed()) retreat(run, aside.box);
+  perceive(run);
+  run.agenda.top().aside = aside;
+  return Signal::ToBePlannedAnew;
+}
+
+}  // namespace
+
 Signal make_room(Run& run) {
   std::optional<planning::Room> room = std::exchange(run.agenda.top().room, std::nullopt);
   if (!room) return Signal::NoPlace;
-  run.agenda.top().has_made_room = true;
+  run.agenda.top().rooms += 1;
+  if (room->aside) return put_aside(run, *room->aside);
   begin_item(run, room->plan.item, run.agenda.top().item);
   run.agenda.top().ready = run.decisions.decided_move(std::move(*room));
   return Signal::Started;
@@ -312,6 +407,11 @@ Signal put_back(Run& run) {
 
 Signal finish_item(Run& run) {
   Agenda& agenda = run.agenda;
+  if (std::optional<planning::Aside> aside = std::exchange(agenda.top().aside, std::nullopt)) {
+    agenda.top().recovery.culprit = aside->box;
+    agenda.top().brings_back = aside->box;
+    return Signal::RepackOther;
+  }
   ItemTask task = std::move(agenda.top());
   agenda.under_way.pop_back();
   if (!agenda.under_way.empty()) {
@@ -350,7 +450,9 @@ Signal resume_item(Run& run) {
   } else if (run.scene().is_seen_outside(own.item)) {
     agenda.left_out.insert(own.item);
   } else if (box && own.sends > 0) {
-    run.log(event::Repacked{own.item, own.plan->best->planned, run.cell.layout.X_WT.inverse() * box->X_WP});
+    const bool made_room = !task.plan || task.brings_back == own.item;
+    run.log(event::Repacked{own.item, own.plan->best->planned, run.cell.layout.X_WT.inverse() * box->X_WP,
+                            made_room ? std::optional(task.item) : std::nullopt});
   }
   if (!task.plan) return Signal::ToBePlannedAnew;  // it was to make room
   const bool has_moved = run.executor.time() > own.begun;
@@ -361,6 +463,7 @@ Signal resume_item(Run& run) {
   }
   recovery.was_pressed = false;
   forget_displacement(run);
+  if (task.brings_back == own.item && task.end != ItemEnd::Placed) return Signal::InPlace;  // nothing more is done
   return Signal::Finished;
 }
 
@@ -370,9 +473,7 @@ Signal go_home(Run& run) {
     return run.stop == StopReason::Interrupted && run.executor.robot().end.reason == plant::EndReason::Cancelled;
   };
   if (run.executor.has_moved() && !is_cancelled()) {
-    const std::vector<std::optional<Pose>> before = run.scene().believed_poses();
-    move_home(run);
-    if (run.executor.has_completed()) check_load(run, before);
+    finish_load(run);
     if (!run.executor.has_completed() && !is_cancelled()) {
       ended.failure = SessionFailureKind::NotHome;
       ended.text = "on the way home: " + run.executor.describe_end();

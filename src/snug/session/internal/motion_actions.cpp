@@ -55,6 +55,7 @@ Signal send_motion(Run& run) {
   ItemTask& task = run.agenda.top();
   const planning::Attempt& attempt = *task.plan->best;
   if (task.stage == 0) {
+    run.agenda.pressed.erase(task.item);
     task.before = run.scene().believed_poses();
     auto& sent = run.belief.edit().sent;
     if (std::ranges::find(sent, task.item) == sent.end()) sent.push_back(task.item);
@@ -86,7 +87,7 @@ Signal follow_motion(Run& run) {
 Signal look_ahead(Run& run) {
   const ItemTask& task = run.agenda.top();
   const auto next = run.agenda.follower_of(task.item);
-  if (!next || (run.options.is_interrupted && run.options.is_interrupted())) return Signal::Finished;
+  if (!next || task.aside || (run.options.is_interrupted && run.options.is_interrupted())) return Signal::Finished;
   // A box that is taken out goes to the aligner: nothing may stand there.
   if (run.desk.wants_out(run.belief.now().items[next->slot()].id)) return Signal::Finished;
   const planning::Attempt& attempt = *task.plan->best;

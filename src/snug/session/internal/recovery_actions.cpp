@@ -202,13 +202,7 @@ Signal press_level(Run& run) {
   RecoveryTask& recovery = run.agenda.top().recovery;
   const model::ItemIndex culprit = recovery.culprit;
   recovery.was_pressed = true;
-  run.executor.run({culprit,
-                    run.belief.now().items[culprit.slot()].id,
-                    plan_press_on(run.scene(), culprit),
-                    {run.belief.now().scenario.skills.press.force, false},
-                    {}});
-  // The force that ends a press is what was asked for.
-  if (run.executor.robot().end.reason == plant::EndReason::ForceGuard) retreat(run, culprit);
+  press_on(run, culprit);
   return Signal::Finished;
 }
 

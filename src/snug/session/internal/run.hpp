@@ -72,6 +72,8 @@ void believe(Run& run, const perception::Observation& seen, model::ItemIndex own
 [[nodiscard]] Trouble assess_item(Run& run, const packing::Placement& planned);
 /// Vacuum off, the tool straight up. `item`: that may hang from it.
 void retreat(Run& run, model::ItemIndex item);
+/// The tool presses on the box from above.
+void press_on(Run& run, model::ItemIndex item);
 /// The tool to its start.
 void move_home(Run& run);
 /// A box to the aligner: held as it hangs for the plan of the item on top, or picked where it lies.

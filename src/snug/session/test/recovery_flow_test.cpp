@@ -388,6 +388,65 @@ TEST(RecoveryFlow, ANeighbourThatLeansWhateverIsDoneIsNotCountedInTheEnd) {
   EXPECT_NEAR(result.planned_percent, model::compute_filling_degree_percent(scenario, container, {"BOX028"}), 1e-9);
 }
 
+/// A box that is found leaning when the robot is home, though it stood when it was let go.
+struct LeansInTheEnd {
+  ScriptedPlant plant;
+  Pose upright = planned_pose(), leaning{upright.R * exp_rotation(Vector3(0.2, 0.0, 0.0)), upright.p};
+
+  SessionResult pack() {
+    SessionOptions options = quick_options();
+    options.log = [this](const SessionEvent& one) {
+      const bool has_ended = std::holds_alternative<event::MotionEnded>(one);
+      if (has_ended && plant.home_count == 1 && plant.pressed.empty()) plant.visible["BOX027"] = leaning;
+    };
+    plant.visible["BOX027"] = upright;
+    return pack_items(plant, 1, {}, options);
+  }
+};
+
+TEST(RecoveryFlow, ABoxThatLeansInTheEndIsPressedAndAccepted) {
+  LeansInTheEnd load;
+  load.plant.when_pressed = [&] { load.plant.visible["BOX027"] = load.upright; };
+  const SessionResult result = load.pack();
+  EXPECT_EQ(load.plant.pressed, std::vector<std::string>{"BOX027"});
+  EXPECT_EQ(result.items[0].end, ItemEnd::Placed) << result.items[0].reason;
+  EXPECT_TRUE(rejected_items(result).empty());
+  EXPECT_EQ(load.plant.home_count, 2) << "and home again";
+}
+
+TEST(RecoveryFlow, ABoxThatLeansInTheEndWhateverIsDoneIsTakenOut) {
+  LeansInTheEnd load;
+  load.plant.happens = [&](int motion) {
+    if (motion == 2) load.plant.visible["BOX027"] = on_bench("BOX027");
+  };
+  const SessionResult result = load.pack();
+  EXPECT_EQ(load.plant.pressed.size(), 1U);
+  EXPECT_EQ(result.items[0].end, ItemEnd::TakenOut);
+  EXPECT_EQ(result.items[0].reason, "leans by 11.5 degrees (6.0 are allowed): it is put on the bench");
+  EXPECT_TRUE(rejected_items(result).empty()) << "what is left is a finished load";
+  EXPECT_TRUE(result.plan.empty());
+}
+
+/// Between the 5 mm of a finished load and the 12 mm of a box that is packed.
+TEST(RecoveryFlow, ABoxThatStandsALittleOverTheRimIsPressedAtOnce) {
+  const Pose X_WP = planned_pose();
+  const double height = model::find_parcel(two_boxes(), "BOX027")->size.z();
+  const double inner = model::find_container(two_boxes(), two_boxes().target)->inner_size.z();
+  const auto pack_with = [&](double over) {
+    ScriptedPlant plant;
+    plant.happens = [&](int) {
+      Pose high = X_WP;
+      high.p.z() = container_pose().p.z() + inner + over - 0.5 * height;
+      plant.visible["BOX027"] = high;
+    };
+    plant.when_pressed = [&] { plant.visible["BOX027"] = X_WP; };
+    return pack_items(plant, 1);
+  };
+  const SessionResult high = pack_with(0.008), low = pack_with(0.004);
+  EXPECT_TRUE(has(high.items[0], Trouble::SticksOut, Remedy::PressLevel));
+  EXPECT_EQ(recovery_count(low), 0);
+}
+
 TEST(RecoveryFlow, AnItemOnTheBenchWhenTheViewIsBlockedIsNoItemWithoutAPlace) {
   ScriptedPlant plant;
   plant.ends = {EndReason::HoldGuard};
@@ -456,14 +515,46 @@ TEST(RecoveryFlow, APackedBoxMovesWhereAnItemHasNoPlaceOtherwise) {
     EXPECT_NEAR(item.seconds.total(), item.done - item.begin, 1e-9);
   }
   EXPECT_EQ(recovery_count(moved), 0);
-  EXPECT_FALSE(moved.items[0].made_room);
-  ASSERT_TRUE(moved.items[1].made_room);
-  EXPECT_EQ(moved.items[1].made_room->item, "BOX027");
-  EXPECT_EQ(moved.items[0].planned, *moved.items[1].made_room);
+  EXPECT_TRUE(moved.items[0].made_room.empty());
+  ASSERT_EQ(moved.items[1].made_room.size(), 1U);
+  EXPECT_EQ(moved.items[1].made_room[0].item, "BOX027");
+  EXPECT_EQ(moved.items[0].planned, moved.items[1].made_room[0]);
   EXPECT_EQ(moved.plan.size(), 2U);
   const SessionResult stays = pack_with("margin");
   ASSERT_EQ(stays.items.size(), 2U);
   EXPECT_FALSE(stays.items[1].is_packed()) << "it does not look ahead";
+}
+
+/// The floor has room for one box, and nothing may stand on the first.
+TEST(RecoveryFlow, APackedBoxWaitsOnTheBenchUntilTheItemStands) {
+  const auto edit = [](model::Scenario& scenario) {
+    std::ranges::find(scenario.containers, scenario.target, &model::Container::name)->inner_size =
+        Vector3(0.177, 0.250, 0.200);
+    std::ranges::find(scenario.parcels, "BOX027", &model::Parcel::id)->handling.no_stack = true;
+    scenario.packing.last_interference = scenario.packing.planned_interference;
+    scenario.recovery.skips = 0;
+  };
+  ScriptedPlant plant;
+  plant.happens = [&](int motion) {
+    plant.visible.clear();
+    if (motion == 2 || motion == 3) plant.visible["BOX027"] = on_bench("BOX027");
+  };
+  SessionOptions options = quick_options();
+  options.agent = "contact-aware";
+  options.decision.time = 0.02;
+  const SessionResult result = pack_items(plant, 2, edit, options);
+  ASSERT_EQ(result.items.size(), 2U);
+  EXPECT_EQ(result.stop_reason, StopReason::AllPacked) << result.stopped;
+  for (const ItemReport& item : result.items) {
+    EXPECT_EQ(item.end, ItemEnd::Placed) << item.id << ": " << item.reason;
+    EXPECT_EQ(item.sends.size(), 1U) << "what the other box took is not its own";
+    EXPECT_NEAR(item.seconds.total(), item.done - item.begin, 1e-9);
+  }
+  ASSERT_EQ(result.items[1].made_room.size(), 1U);
+  EXPECT_EQ(result.items[1].made_room[0].item, "BOX027");
+  EXPECT_EQ(result.items[0].planned, result.items[1].made_room[0]);
+  EXPECT_GT(result.items[0].planned.X_TP.p.z(), result.items[1].planned.X_TP.p.z()) << "on the item";
+  EXPECT_EQ(result.plan.size(), 2U);
 }
 
 // What holds of every session, whatever happens in its plant.
