@@ -126,13 +126,14 @@ internal::Scratch::Scratch(const WorldModel& model, int threads) : pool(threads)
   static std::atomic<std::uint64_t> scratches{0};
   stamp = (++scratches) << 40;
   memories.resize(n);
-  pair_memories.resize(model.pair_capacity);
-  if (pool.size() > 1) visits.resize(model.pair_capacity);
+  pair_memories = BoundedVector<PairMemory>(model.pair_capacity);
+  if (pool.size() > 1) visits = BoundedVector<PairVisit>(model.pair_capacity);
   bodies.resize(n);
   ends.resize(n);
   active.resize(n);
   carriers.reserve(n);
   whitening.resize(n);
+  dense_whitening = BoundedVector<Matrix6>(n);
   last_torque.resize(n);
   u.resize(6 * n + 2);
   shift.resize(6 * n + 2);
@@ -140,7 +141,7 @@ internal::Scratch::Scratch(const WorldModel& model, int threads) : pool(threads)
   island_of_root.resize(n);
   contacts = BoundedVector<Contact>(contact_capacity);
   patches = BoundedVector<Patch>(std::min(model.pair_capacity, contact_capacity));
-  patch_order.resize(patches.capacity());
+  patch_order = BoundedVector<int>(patches.capacity());
   shared_supports = SharedSupports(n, patches.capacity(), contact_capacity);
   lost_impulses.all = BoundedVector<LostImpulse>(contact_capacity);
   const bool resists =
@@ -154,7 +155,9 @@ internal::Scratch::Scratch(const WorldModel& model, int threads) : pool(threads)
   island_order.resize(n + 1);
   workers.reserve(static_cast<std::size_t>(pool.size()));
   for (int i = 0; i < pool.size(); ++i) {
-    workers.push_back({NewtonScratch(n, row_capacity), PositionCorrection(n, row_capacity), {}, {}});
+    NewtonScratch newton(n, row_capacity);
+    PositionCorrection positions(n, row_capacity, newton.open_group.room());
+    workers.push_back({std::move(newton), std::move(positions), {}, {}});
     workers.back().element_bodies.reserve(n);
   }
   solver_threads.pool = &pool;
@@ -162,12 +165,12 @@ internal::Scratch::Scratch(const WorldModel& model, int threads) : pool(threads)
   keys.reserve(2 * model.pair_capacity + 1);
   old_keys.reserve(model.pair_capacity);
   new_keys.reserve(model.pair_capacity + 1);
-  pair_origin.resize(model.pair_capacity);
+  pair_origin = BoundedVector<int>(model.pair_capacity);
   moved.reserve(geom_count);
   is_moved.resize(geom_count);
   sweep_order.resize(geom_count);
   for (std::size_t i = 0; i < geom_count; ++i) sweep_order[i] = static_cast<int>(i);
-  pair_done.resize(model.pair_capacity);
+  pair_done = BoundedVector<char>(model.pair_capacity);
   is_moving.resize(n);
   still_since.resize(n);
   for (const BodyModel& body : model.bodies) {

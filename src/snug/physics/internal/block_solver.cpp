@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <utility>
 
 #include "snug/physics/internal/contact_row.hpp"
 #include "snug/physics/internal/panel_kernels.hpp"
@@ -73,14 +74,16 @@ LazyStore::LazyStore(std::size_t count)
 
 void LazyStore::Free::operator()(double* data) const { ::operator delete(data, kAlignment); }
 
-BlockSolver::BlockSolver(std::size_t bodies, std::size_t connections)
-    : pattern_(bodies, connections),
-      lower_(36 * BlockPattern::max_blocks(bodies)),
-      upper_(36 * BlockPattern::max_blocks(bodies)),
-      place_(bodies),
-      product_(36 * bodies),
-      x_(6 * bodies),
-      gathered_(6 * bodies) {}
+FactorStore::FactorStore(std::size_t bodies)
+    : lower(36 * BlockPattern::max_blocks(bodies)),
+      upper(36 * BlockPattern::max_blocks(bodies)),
+      place(bodies),
+      product(36 * bodies),
+      x(6 * bodies),
+      gathered(6 * bodies) {}
+
+BlockSolver::BlockSolver(std::size_t bodies, std::size_t connections, std::shared_ptr<FactorStore> store)
+    : pattern_(bodies, connections), store_(std::move(store)) {}
 
 void BlockSolver::set_identity() {
   for (int f = 0; f < pattern_.front_count(); ++f) {
@@ -121,9 +124,10 @@ BlockSolver::Coupling BlockSolver::coupling(int connection) {
 }
 
 void BlockSolver::place_rows(const Front& front) {
-  for (int k = 0; k < front.width; ++k) place_[at(front.first + k)] = k;
+  std::vector<int>& place = store_->place;
+  for (int k = 0; k < front.width; ++k) place[at(front.first + k)] = k;
   const int* rows = pattern_.rows(front);
-  for (int i = 0; i < front.rows(); ++i) place_[at(rows[i])] = front.width + i;
+  for (int i = 0; i < front.rows(); ++i) place[at(rows[i])] = front.width + i;
 }
 
 /// Subtracts what the elimination of an earlier front leaves in the columns and rows of this one.
@@ -135,25 +139,25 @@ void BlockSolver::take_update(const Front& front, const BlockPattern::Update& up
   const std::ptrdiff_t ld = lower_stride(source), ud = upper_stride(source);
   const std::ptrdiff_t front_ld = lower_stride(front), front_ud = upper_stride(front);
   const int depth = 6 * source.width, count = source.rows();
+  const std::vector<int>& place = store_->place;
+  double* product = store_->product.get();
   const auto subtract = [&](int first, double* to, std::ptrdiff_t stride, int above) {
     const int height = 6 * (count - first);
     for (int i = first; i < count; ++i) {
-      double* c = to + 6 * (place_[at(rows[i])] - above);
-      const double* p = product_.data() + 6 * (i - first);
+      double* c = to + 6 * (place[at(rows[i])] - above);
+      const double* p = product + 6 * (i - first);
       for (int j = 0; j < 6; ++j, c += stride, p += height) {
         for (int k = 0; k < 6; ++k) c[k] -= p[k];
       }
     }
   };
   for (int j = update.begin; j < update.end; ++j) {
-    const std::ptrdiff_t column = 6 * place_[at(rows[j])];
+    const std::ptrdiff_t column = 6 * place[at(rows[j])];
     const int below = 6 * (count - update.begin), beside = 6 * (count - update.end);
-    set_product(
-        {below, depth, source_lower + 6 * update.begin, ld, source_upper + 6 * j, 1, ud, product_.data(), below});
+    set_product({below, depth, source_lower + 6 * update.begin, ld, source_upper + 6 * j, 1, ud, product, below});
     subtract(update.begin, lower(front) + column * front_ld, front_ld, 0);
     if (beside == 0) continue;
-    set_product(
-        {beside, depth, source_upper + 6 * update.end, ud, source_lower + 6 * j, 1, ld, product_.data(), beside});
+    set_product({beside, depth, source_upper + 6 * update.end, ud, source_lower + 6 * j, 1, ld, product, beside});
     subtract(update.end, upper(front) + column * front_ud, front_ud, front.width);
   }
 }
@@ -162,6 +166,7 @@ void BlockSolver::take_update(const Front& front, const BlockPattern::Update& up
 void BlockSolver::eliminate(const Front& front) {
   double* panel = lower(front);
   double* side = upper(front);
+  double* product = store_->product.get();
   const std::ptrdiff_t ld = lower_stride(front), ud = upper_stride(front);
   const int beside = 6 * front.rows();
   for (int c = 0; c < front.width; ++c) {
@@ -171,8 +176,8 @@ void BlockSolver::eliminate(const Front& front) {
     BlockMap(pivot, Stride(ld)) = inverse;
     if (below == 0) continue;
     double* column = pivot + 6;
-    set_product({below, 6, column, ld, inverse.data(), 6, 1, product_.data(), below});
-    for (int k = 0; k < 6; ++k) std::copy_n(product_.data() + k * below, below, column + k * ld);
+    set_product({below, 6, column, ld, inverse.data(), 6, 1, product, below});
+    for (int k = 0; k < 6; ++k) std::copy_n(product + k * below, below, column + k * ld);
     for (int d = c + 1; d < front.width; ++d) {
       const double* right = panel + 6 * c + 6 * d * ld;  // U(c, d)
       subtract_product({below, 6, column, ld, right, ld, 1, panel + 6 * (c + 1) + 6 * d * ld, ld});
@@ -193,11 +198,13 @@ void BlockSolver::factorize() {
 
 void BlockSolver::solve(double* x) {
   using Part = Eigen::Map<Vector6>;
-  for (int k = 0; k < count(); ++k) Part(x_.data() + 6 * k) = Part(x + 6 * pattern_.body(k));
+  double* by_rank = store_->x.get();
+  double* gathered = store_->gathered.get();
+  for (int k = 0; k < count(); ++k) Part(by_rank + 6 * k) = Part(x + 6 * pattern_.body(k));
   for (int f = 0; f < pattern_.front_count(); ++f) {
     const Front& front = pattern_.front(f);
     const std::ptrdiff_t ld = lower_stride(front);
-    double* own = x_.data() + 6 * front.first;
+    double* own = by_rank + 6 * front.first;
     for (int c = 0; c < front.width; ++c) {
       for (int d = c + 1; d < front.width; ++d) {
         Part(own + 6 * d).noalias() -= BlockView(lower(front) + 6 * d + 6 * c * ld, Stride(ld)) * Part(own + 6 * c);
@@ -205,19 +212,19 @@ void BlockSolver::solve(double* x) {
     }
     const int rows = front.rows();
     if (rows == 0) continue;
-    std::fill_n(gathered_.begin(), 6 * rows, 0.0);
-    add_product(6 * rows, 6 * front.width, lower(front) + 6 * front.width, ld, own, gathered_.data());
+    std::fill_n(gathered, 6 * rows, 0.0);
+    add_product(6 * rows, 6 * front.width, lower(front) + 6 * front.width, ld, own, gathered);
     const int* row = pattern_.rows(front);
-    for (int i = 0; i < rows; ++i) Part(x_.data() + 6 * row[i]) -= Part(gathered_.data() + 6 * i);
+    for (int i = 0; i < rows; ++i) Part(by_rank + 6 * row[i]) -= Part(gathered + 6 * i);
   }
   for (int f = pattern_.front_count() - 1; f >= 0; --f) {
     const Front& front = pattern_.front(f);
     const std::ptrdiff_t ld = lower_stride(front);
-    double* own = x_.data() + 6 * front.first;
+    double* own = by_rank + 6 * front.first;
     const int rows = front.rows();
     const int* row = pattern_.rows(front);
-    for (int i = 0; i < rows; ++i) Part(gathered_.data() + 6 * i) = Part(x_.data() + 6 * row[i]);
-    subtract_transposed(6 * rows, 6 * front.width, upper(front), upper_stride(front), gathered_.data(), own);
+    for (int i = 0; i < rows; ++i) Part(gathered + 6 * i) = Part(by_rank + 6 * row[i]);
+    subtract_transposed(6 * rows, 6 * front.width, upper(front), upper_stride(front), gathered, own);
     for (int c = front.width - 1; c >= 0; --c) {
       Vector6 part = Part(own + 6 * c);
       for (int d = c + 1; d < front.width; ++d) {
@@ -226,7 +233,7 @@ void BlockSolver::solve(double* x) {
       Part(own + 6 * c).noalias() = BlockView(lower(front) + 6 * c * (ld + 1), Stride(ld)) * part;
     }
   }
-  for (int k = 0; k < count(); ++k) Part(x + 6 * pattern_.body(k)) = Part(x_.data() + 6 * k);
+  for (int k = 0; k < count(); ++k) Part(x + 6 * pattern_.body(k)) = Part(by_rank + 6 * k);
 }
 
 }  // namespace snug::physics::internal

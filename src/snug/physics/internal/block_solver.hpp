@@ -24,6 +24,18 @@ class LazyStore {
   std::unique_ptr<double, Free> data_;
 };
 
+/// What factorisations work in. Solvers that share one take turns: from set_identity() to the last solve() of a matrix
+/// it belongs to one of them.
+struct FactorStore {
+  explicit FactorStore(std::size_t bodies);
+
+  LazyStore lower, upper;  ///< panels
+  std::vector<int> place;  ///< of each rank in the panel at hand
+  LazyStore product;       ///< six columns of a panel
+  LazyStore x;             ///< by rank
+  LazyStore gathered;
+};
+
 /// LU factorisation of matrices I + sum J^T S J, whose pattern is symmetric and whose blocks on the diagonal stay
 /// regular without pivoting. Fronts of bodies (BlockPattern) have dense panels; each takes over what earlier ones
 /// change in it, in their order, so that fill, work and the bytes of the result depend on the pattern alone. Never
@@ -34,7 +46,7 @@ class LazyStore {
 class BlockSolver {
  public:
   /// For up to `bodies` bodies and `connections` calls of connect().
-  BlockSolver(std::size_t bodies, std::size_t connections);
+  BlockSolver(std::size_t bodies, std::size_t connections, std::shared_ptr<FactorStore> store);
 
   void begin(int count) { pattern_.begin(count); }
   /// Returns the number of this call, for coupling(). Pairs i != j may repeat.
@@ -60,14 +72,13 @@ class BlockSolver {
 
  private:
   using Front = BlockPattern::Front;
-  using Index = std::vector<int>;
 
   /// Panel of a front: its own bodies and below them its rows, 6 numbers each. Below the diagonal, L with unit
   /// diagonal; on it, the inverse of U's; above it, within the front, U.
-  [[nodiscard]] double* lower(const Front& front) { return lower_.get() + 36 * front.panel; }
+  [[nodiscard]] double* lower(const Front& front) { return store_->lower.get() + 36 * front.panel; }
   [[nodiscard]] std::ptrdiff_t lower_stride(const Front& front) const { return 6 * front.height(); }
   /// U beside the front's own bodies, transposed: its rows, 6 numbers each, for each of its bodies.
-  [[nodiscard]] double* upper(const Front& front) { return upper_.get() + 36 * front.panel; }
+  [[nodiscard]] double* upper(const Front& front) { return store_->upper.get() + 36 * front.panel; }
   [[nodiscard]] std::ptrdiff_t upper_stride(const Front& front) const { return 6 * front.rows(); }
 
   void place_rows(const Front& front);
@@ -75,11 +86,7 @@ class BlockSolver {
   void eliminate(const Front& front);
 
   BlockPattern pattern_;
-  LazyStore lower_, upper_;
-  Index place_;                  ///< of each rank in the panel at hand
-  std::vector<double> product_;  ///< six columns of a panel
-  std::vector<double> x_;        ///< by rank
-  std::vector<double> gathered_;
+  std::shared_ptr<FactorStore> store_;
 };
 
 }  // namespace snug::physics::internal

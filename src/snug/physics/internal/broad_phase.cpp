@@ -198,6 +198,7 @@ void replace_pairs(WorldState& state, Scratch& work) {
   constexpr int kNew = -1;
   const std::size_t count = work.keys.size();
   std::size_t old = 0;
+  work.pair_origin.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     while (old < work.old_keys.size() && work.old_keys[old] < work.keys[i]) ++old;
     const bool is_old = old < work.old_keys.size() && work.old_keys[old] == work.keys[i];

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -35,18 +36,31 @@ struct SolverThreads {
 };
 inline WorkerPool* pool_of(const SolverThreads* threads) { return threads != nullptr ? threads->pool : nullptr; }
 
+/// What single steps and runs of sweeps work in: nothing in it outlasts them but the rows that were packed last. A
+/// group and the parts that it is looked at in share it, since one thread solves them in turn.
+struct StepScratch {
+  StepScratch(std::size_t bodies, std::size_t rows);
+  ~StepScratch();
+
+  std::shared_ptr<FactorStore> factors;
+  std::vector<double> u, u_start, error, step;  ///< 6 per active body
+  std::unique_ptr<NewtonLaw[]> laws;            ///< of each row
+  std::unique_ptr<double[]> before;             ///< 3 per row: impulses before the last sweep with momentum
+  std::unique_ptr<PackedSweeps> packed;
+  std::int64_t packings = 0;  ///< number of the last group packed
+};
+
 /// What a group of rows is solved with.
 struct GroupScratch {
   /// `levels`: how often parts of a group are looked at in parts again.
-  GroupScratch(std::size_t bodies, std::size_t rows, int levels = 2);
+  GroupScratch(std::size_t bodies, std::size_t rows, std::shared_ptr<StepScratch> steps, int levels = 2);
   ~GroupScratch();
   GroupScratch(GroupScratch&&) noexcept;
 
+  std::shared_ptr<StepScratch> steps;
   ContactSystem system;
   std::unique_ptr<NewtonRow[]> rows;
-  std::unique_ptr<double[]> before;                     ///< 3 per row: impulses before the last sweep with momentum
-  std::unique_ptr<PackedSweeps> packed;                 ///< where there are clusters
-  std::vector<double> u, u_free, u_start, error, step;  ///< 6 per active body
+  std::vector<double> u_free;  ///< 6 per active body
   std::unique_ptr<ClusterScratch> clusters;
   bool is_infeasible = false;              ///< the group that was solved last: no velocities keep its contacts apart
   const SolverThreads* threads = nullptr;  ///< for large groups; nullptr: only the one that calls
@@ -63,7 +77,8 @@ struct GroupOutcome {
 };
 
 struct NewtonScratch {
-  NewtonScratch(std::size_t bodies, std::size_t rows) : groups(bodies, rows), open_group(rows), group(bodies, rows) {}
+  NewtonScratch(std::size_t bodies, std::size_t rows)
+      : groups(bodies, rows), open_group(rows), group(bodies, rows, std::make_shared<StepScratch>(bodies, rows)) {}
 
   RowGroups groups;
   OpenGroup open_group;

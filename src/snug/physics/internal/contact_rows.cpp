@@ -33,7 +33,7 @@ Side side_of(const Scratch& work, const BodyWork& body, const Patch& patch, cons
   if (body.active < 0) return side;
   side.p_WBcm = body.p_WBcm + way;
   side.whitening = &work.whitening[static_cast<std::size_t>(body.active)];
-  if (side.whitening->is_dense) return side;
+  if (side.whitening->dense != nullptr) return side;
   const Vector3* axes[3] = {&patch.n, &patch.t1, &patch.t2};
   for (int i = 0; i < 3; ++i) {
     const Vector3 d = sign * *axes[i];
@@ -57,13 +57,13 @@ using TangentAxes = Axes<1, 3>;
 /// From `column` on.
 template <class Range>
 void fill_side(const Side& side, const Patch& patch, const Vector3& arm, int column, Row& row) {
-  if (side.whitening->is_dense) {
+  if (side.whitening->dense != nullptr) {
     const Vector3* axes[3] = {&patch.n, &patch.t1, &patch.t2};
     for (int i = Range::first; i < Range::end; ++i) {
       Vector6 j;
       j << side.sign * *axes[i], arm.cross(side.sign * *axes[i]);
       Eigen::Map<Vector6> out(row.j[i] + column);
-      out = side.whitening->dense.triangularView<Eigen::Upper>().transpose() * j;
+      out = side.whitening->dense->triangularView<Eigen::Upper>().transpose() * j;
     }
     return;
   }

@@ -2,6 +2,7 @@
 #include "snug/physics/internal/contact_system.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "snug/physics/internal/panel_kernels.hpp"
 
@@ -12,8 +13,8 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
-ContactSystem::ContactSystem(std::size_t bodies, std::size_t rows)
-    : place_(bodies, -1), solver_(bodies, rows), right_(6 * bodies) {
+ContactSystem::ContactSystem(std::size_t bodies, std::size_t rows, std::shared_ptr<FactorStore> store)
+    : place_(bodies, -1), solver_(bodies, rows, std::move(store)), right_(6 * bodies) {
   bodies_.reserve(bodies);
   patches_.reserve(rows);
 }
@@ -62,22 +63,22 @@ bool ContactSystem::analyze() {
   return true;
 }
 
-bool ContactSystem::factorize(const Row* rows, const NewtonRow* newton) {
+bool ContactSystem::factorize(const Row* rows, const NewtonLaw* laws) {
   if (!is_analyzed_ && !analyze()) return false;
   solver_.set_identity();
-  for (const RowPatch& patch : patches_) add_patch(patch, rows, newton);
+  for (const RowPatch& patch : patches_) add_patch(patch, rows, laws);
   solver_.factorize();
   return true;
 }
 
 /// What the contacts of one pair of bodies bring in.
-void ContactSystem::add_patch(const RowPatch& patch, const Row* rows, const NewtonRow* newton) {
+void ContactSystem::add_patch(const RowPatch& patch, const Row* rows, const NewtonLaw* laws) {
   ContactTerm terms[kMaxContactTerms];
   const bool is_pair = patch.connection >= 0;
   const int column = is_pair || patch.ia >= 0 ? 0 : 6;
   int count = 0;
   for (int i = patch.first; i < patch.first + patch.count; ++i) {
-    if (newton[i].law.slope[0] > 0.0) terms[count++] = {rows[i].j[0] + column, newton[i].law.slope};
+    if (laws[i].law.slope[0] > 0.0) terms[count++] = {rows[i].j[0] + column, laws[i].law.slope};
   }
   if (count == 0) return;
   if (is_pair) return add_contact_terms(terms, count, patch.blocks);

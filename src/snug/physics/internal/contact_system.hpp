@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -12,12 +13,16 @@ namespace snug::physics::internal {
 
 /// What Newton's method keeps of one contact.
 struct NewtonRow {
+  double best[3];   ///< N s, with the least residual so far
+  double penalty;   ///< of the generalized step, in units of 1 / W
+  double residual;  ///< m/s, as measured last
+  ContactStatus status;
+};
+
+/// What its steps take the law of one contact for.
+struct NewtonLaw {
   LinearLaw law;
   double center[3];  ///< N s, about which the augmented law is taken
-  double best[3];    ///< N s, with the least residual so far
-  double penalty;    ///< of the generalized step, in units of 1 / W
-  double residual;   ///< m/s, as measured last
-  ContactStatus status;
 };
 
 /// Rows behind each other with the same bodies, and where these stand in the linear system.
@@ -32,7 +37,7 @@ struct RowPatch {
 /// construction.
 class ContactSystem {
  public:
-  ContactSystem(std::size_t bodies, std::size_t rows);
+  ContactSystem(std::size_t bodies, std::size_t rows, std::shared_ptr<FactorStore> store);
 
   void begin();
   /// Rows come in the order of their indices, from 0. They may come after steps, too. Returns whether one of its bodies
@@ -43,14 +48,14 @@ class ContactSystem {
   [[nodiscard]] std::span<const RowPatch> patches() const { return patches_; }
 
   /// False: it fills beyond memory.
-  [[nodiscard]] bool factorize(const Row* rows, const NewtonRow* newton);
+  [[nodiscard]] bool factorize(const Row* rows, const NewtonLaw* laws);
   /// x = A^-1 y, 6 numbers for each active body.
   void solve(const double* y, double* x);
 
  private:
   void add_body(int body);
   [[nodiscard]] bool analyze();
-  void add_patch(const RowPatch& patch, const Row* rows, const NewtonRow* newton);
+  void add_patch(const RowPatch& patch, const Row* rows, const NewtonLaw* laws);
 
   std::vector<int> bodies_;
   std::vector<int> place_;  ///< of each active body, in bodies_; -1: not of the group

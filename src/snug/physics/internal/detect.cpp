@@ -207,6 +207,7 @@ void visit_pairs(const WorldModel& model, const WorldInput& input, WorldState& s
                  double margin) {
   work.has_visits = is_shared(work.pool, state.pairs.size());
   if (!work.has_visits) return;
+  work.visits.resize(state.pairs.size());
   for_ranges(work.pool, state.pairs.size(), [&](std::size_t first, std::size_t end) {
     PairContacts found;
     for (std::size_t i = first; i < end; ++i) {
@@ -331,7 +332,9 @@ void detect_contacts(const WorldModel& model, const WorldInput& input, WorldStat
   work.contacts.clear();
   work.has_too_many_contacts = work.has_corner_pairs = false;
   work.lost_impulses.all.clear();
-  std::fill_n(work.pair_done.begin(), state.pairs.size(), char{0});
+  work.pair_memories.resize(state.pairs.size());
+  work.pair_done.resize(state.pairs.size());
+  std::fill(work.pair_done.begin(), work.pair_done.end(), char{0});
   visit_pairs(model, input, state, work, reach, margin);
   while (walk_pairs(model, input, state, work, reach, margin)) {  // waking a group brings its pairs in
   }

@@ -108,8 +108,9 @@ void linearize_body(const WorldModel& model, const WorldInput& input, Scratch& w
   const Vector6 momentum = M * start + dt * (external + element.forces.wrench) + (effective - M) * element.velocity;
   const Vector6 free = cholesky.solve(momentum);
   Whitening& whitening = work.whitening[static_cast<std::size_t>(b.active)];
-  whitening.is_dense = true;
-  whitening.dense = upper_inverse(cholesky.matrixU());
+  Matrix6& dense = work.dense_whitening[static_cast<std::size_t>(b.active)];
+  dense = upper_inverse(cholesky.matrixU());
+  whitening.dense = &dense;
   Eigen::Map<Vector6>(work.u.data() + 6 * b.active) = whiten(whitening, free.head<3>(), free.tail<3>());
 }
 

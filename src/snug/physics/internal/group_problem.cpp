@@ -1,6 +1,7 @@
 // Group problem: Newton's method on one group of rows. docs/theory/contact.md, section 4.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "snug/physics/internal/chunks.hpp"
 #include "snug/physics/internal/contact_newton.hpp"
@@ -84,6 +85,7 @@ class GroupProblem {
         end_(rows.data() + rows.size()),
         u_(u),
         work_(work),
+        steps_(*work.steps),
         open_group_(open_group),
         threads_(std::ssize(rows) >= kSharedGroup ? work.threads : nullptr) {}
 
@@ -94,6 +96,12 @@ class GroupProblem {
   void each_row(Visit&& visit) {
     NewtonRow* newton = work_.rows.get();
     for (Row* row = first_; row != end_; ++row, ++newton) visit(*row, *newton);
+  }
+  /// The same with what steps take the laws for.
+  template <class Visit>
+  void each_law(Visit&& visit) {
+    NewtonLaw* law = steps_.laws.get();
+    for (Row* row = first_; row != end_; ++row, ++law) visit(*row, *law);
   }
   [[nodiscard]] std::span<const int> bodies() const { return work_.system.bodies(); }
   [[nodiscard]] bool is_solved() const { return best_ <= tolerance_; }
@@ -127,7 +135,7 @@ class GroupProblem {
 
   void augment(const Care& care);
   bool solve_stage(double penalty, double tolerance, const Care& care);
-  void relax_law(const Row& row, NewtonRow& newton, double penalty);
+  void relax_law(const Row& row, NewtonLaw& newton, double penalty);
   double evaluate(double penalty);
   double search_line(double penalty, double error, int max_halvings);
   bool presses() const;
@@ -139,6 +147,7 @@ class GroupProblem {
   Row* end_;
   double* u_;
   GroupScratch& work_;
+  StepScratch& steps_;
   OpenGroup* open_group_;
   const SolverThreads* threads_;  ///< that it may use, or nullptr: others are solved beside it
   double residual_ = 0.0, best_ = 0.0;
@@ -146,7 +155,8 @@ class GroupProblem {
   bool is_proof_ = false;  ///< only rigid contacts, without friction
   int iterations_ = 0;
   int sweeps_ = 0;
-  std::ptrdiff_t packed_rows_ = 0;  ///< that work_.packed holds; -1: it cannot
+  std::ptrdiff_t packed_rows_ = 0;  ///< that steps_.packed holds; -1: it cannot
+  std::int64_t packing_ = 0;        ///< in which it took them; later ones are of other groups
 };
 
 void GroupProblem::add_row(Row& row) {
@@ -210,49 +220,50 @@ void GroupProblem::restore_best() {
 void GroupProblem::linearise() {
   wake();
   for (const int body : bodies()) {
-    for (int k = 6 * body; k < 6 * body + 6; ++k) work_.error[at(k)] = work_.u_free[at(k)] - u_[k];
+    for (int k = 6 * body; k < 6 * body + 6; ++k) steps_.error[at(k)] = work_.u_free[at(k)] - u_[k];
   }
   residual_ = 0.0;
   each_row([&](const Row& row, NewtonRow& newton) {
+    LinearLaw& law = steps_.laws[static_cast<std::size_t>(&row - first_)].law;
     double xi[3] = {};
     const bool is_open = stays_open(row, u_);
     if (!is_open) contact_velocity(row, u_, xi);
     newton.residual = is_open ? 0.0 : natural_map(row, xi, row.lambda);
     residual_ = std::max(residual_, newton.residual);
     const ContactStatus before = newton.status;
-    newton.status = is_open ? open_law(newton.law) : generalized_law(row, newton.penalty, xi, newton.law);
+    newton.status = is_open ? open_law(law) : generalized_law(row, newton.penalty, xi, law);
     if (before != ContactStatus::Unknown) {
       if (before != newton.status) {
         newton.penalty = std::max(kLeastFlipPenalty, std::min(kPenalty, newton.penalty) / kFlipCut);
-        if (!is_open) (void)generalized_law(row, newton.penalty, xi, newton.law);
+        if (!is_open) (void)generalized_law(row, newton.penalty, xi, law);
       } else {
         newton.penalty = is_solved() ? std::min(kSolvedPenalty, newton.penalty * kSolvedGrowth)
                                      : std::min(kPenalty, newton.penalty * kFlipRecovery);
       }
     }
-    if (!is_open) apply(row, newton.law.lambda, work_.error.data());
+    if (!is_open) apply(row, law.lambda, steps_.error.data());
   });
   keep_best();
 }
 
-/// work_.step from the laws and work_.error. False: the system fills beyond memory.
+/// steps_.step from the laws and steps_.error. False: the system fills beyond memory.
 bool GroupProblem::take_step() {
   ++iterations_;
-  has_room_ = work_.system.factorize(first_, work_.rows.get());
-  if (has_room_) work_.system.solve(work_.error.data(), work_.step.data());
+  has_room_ = work_.system.factorize(first_, steps_.laws.get());
+  if (has_room_) work_.system.solve(steps_.error.data(), steps_.step.data());
   return has_room_;
 }
 
-/// Impulses of the linear laws for work_.step, cut to the cone, and u from them.
+/// Impulses of the linear laws for steps_.step, cut to the cone, and u from them.
 void GroupProblem::take_linear_impulses() {
   for (const int body : bodies()) std::copy_n(work_.u_free.data() + 6 * body, 6, u_ + 6 * body);
-  each_row([&](Row& row, const NewtonRow& newton) {
+  each_law([&](Row& row, const NewtonLaw& newton) {
     const double(&slope)[9] = newton.law.slope;
     double* lambda = row.lambda;
     std::fill_n(lambda, 3, 0.0);
     if (slope[0] <= 0.0) return;
     double xi[3];
-    change_of_velocity(row, work_.step.data(), xi);
+    change_of_velocity(row, steps_.step.data(), xi);
     const double normal = newton.law.lambda[0] - slope[0] * xi[0];
     if (normal <= 0.0) return;
     lambda[0] = normal;
@@ -280,8 +291,8 @@ void GroupProblem::take_momentum(double momentum) {
   for (const int body : bodies()) {
     for (int k = 6 * body; k < 6 * body + 6; ++k) {
       const double now = u_[k];
-      u_[k] = now + momentum * (now - work_.u_start[at(k)]);
-      work_.u_start[at(k)] = now;
+      u_[k] = now + momentum * (now - steps_.u_start[at(k)]);
+      steps_.u_start[at(k)] = now;
     }
   }
 }
@@ -289,11 +300,12 @@ void GroupProblem::take_momentum(double momentum) {
 /// False where too many rows share a body.
 bool GroupProblem::run_packed_sweeps(int count, double few) {
   if (packed_rows_ < 0) return false;
-  if (packed_rows_ != end_ - first_) {
-    packed_rows_ = work_.packed->pack(first_, work_.system.patches(), bodies(), is_cut(), pool()) ? end_ - first_ : -1;
+  if (packed_rows_ != end_ - first_ || packing_ != steps_.packings) {
+    packing_ = ++steps_.packings;
+    packed_rows_ = steps_.packed->pack(first_, work_.system.patches(), bodies(), is_cut(), pool()) ? end_ - first_ : -1;
     if (packed_rows_ < 0) return false;
   }
-  (void)work_.packed->run(first_, u_, {count, kMostMomentum, within_reach(), few}, pool());
+  (void)steps_.packed->run(first_, u_, {count, kMostMomentum, within_reach(), few}, pool());
   return true;
 }
 
@@ -305,14 +317,14 @@ void GroupProblem::run_sweeps(int count, double few) {
     measure();
     return;
   }
-  double* before = work_.before.get();
+  double* before = steps_.before.get();
   for (const Row* row = first_; row != end_; ++row, before += 3) std::copy_n(row->lambda, 3, before);
-  for (const int body : bodies()) std::copy_n(u_ + 6 * body, 6, work_.u_start.data() + 6 * body);
+  for (const int body : bodies()) std::copy_n(u_ + 6 * body, 6, steps_.u_start.data() + 6 * body);
   double t = 1.0, momentum = 0.0;
   for (int i = 0; i < count; ++i) {
     take_momentum(momentum);
     double uphill = 0.0;
-    const double change = sweep_with_momentum(first_, end_, u_, momentum, work_.before.get(), uphill);
+    const double change = sweep_with_momentum(first_, end_, u_, momentum, steps_.before.get(), uphill);
     if (change <= kStillSweep * wanted_) break;
     const double next = 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * t * t));
     momentum = uphill > 0.0 ? 0.0 : std::min(kMostMomentum, (t - 1.0) / next);
@@ -322,41 +334,42 @@ void GroupProblem::run_sweeps(int count, double few) {
   measure();
 }
 
-/// The augmented law at work_.u.
-void GroupProblem::relax_law(const Row& row, NewtonRow& newton, double penalty) {
+/// The augmented law at steps_.u.
+void GroupProblem::relax_law(const Row& row, NewtonLaw& newton, double penalty) {
   if (is_proof_ && !(row.is_rigid && row.kind == RowKind::Contact)) {
     (void)open_law(newton.law);
     return;
   }
   double xi[3];
-  contact_velocity(row, work_.u.data(), xi);
+  contact_velocity(row, steps_.u.data(), xi);
   const double tangential = is_proof_ ? 0.0 : penalty * row.step_t;
   augmented_law(row, penalty / rigid_mobility(row), tangential, newton.center, xi, newton.law);
 }
 
-/// Momentum error u - u_free - sum (J T)^T lambda(u) of every body at work.u; returns its norm.
+/// Momentum error u - u_free - sum (J T)^T lambda(u) of every body at steps_.u; returns its norm.
 double GroupProblem::evaluate(double penalty) {
   for (const int body : bodies()) {
-    for (int k = 6 * body; k < 6 * body + 6; ++k) work_.error[at(k)] = work_.u[at(k)] - work_.u_free[at(k)];
+    for (int k = 6 * body; k < 6 * body + 6; ++k) steps_.error[at(k)] = steps_.u[at(k)] - work_.u_free[at(k)];
   }
-  each_row([&](const Row& row, NewtonRow& newton) {
+  each_law([&](const Row& row, NewtonLaw& newton) {
     relax_law(row, newton, penalty);
     if (newton.law.lambda[0] <= 0.0) return;
     const double d[3] = {-newton.law.lambda[0], -newton.law.lambda[1], -newton.law.lambda[2]};
-    apply(row, d, work_.error.data());
+    apply(row, d, steps_.error.data());
   });
   double square = 0.0;
-  for (const int body : bodies()) square += Eigen::Map<const Vector6>(work_.error.data() + 6 * body).squaredNorm();
+  for (const int body : bodies()) square += Eigen::Map<const Vector6>(steps_.error.data() + 6 * body).squaredNorm();
   return std::sqrt(square);
 }
 
 /// Moves along the Newton step until the momentum error shrinks. Returns the new error, negative when it does not.
 double GroupProblem::search_line(double penalty, double error, int max_halvings) {
-  for (const int body : bodies()) std::copy_n(work_.u.data() + 6 * body, 6, work_.u_start.data() + 6 * body);
+  for (const int body : bodies()) std::copy_n(steps_.u.data() + 6 * body, 6, steps_.u_start.data() + 6 * body);
   double length = 1.0;
   for (int halving = 0; halving < max_halvings; ++halving, length *= 0.5) {
     for (const int body : bodies()) {
-      for (int k = 6 * body; k < 6 * body + 6; ++k) work_.u[at(k)] = work_.u_start[at(k)] - length * work_.step[at(k)];
+      for (int k = 6 * body; k < 6 * body + 6; ++k)
+        steps_.u[at(k)] = steps_.u_start[at(k)] - length * steps_.step[at(k)];
     }
     const double next = evaluate(penalty);
     if (next < (1.0 - 1e-4 * length) * error) return next;
@@ -392,23 +405,23 @@ bool GroupProblem::is_infeasible() {
   if (!presses()) return false;
   is_proof_ = true;
   double mobility = 0.0, fastest = 0.0;
-  each_row([&](const Row& row, NewtonRow& newton) {
+  each_law([&](const Row& row, NewtonLaw& newton) {
     std::fill_n(newton.center, 3, 0.0);
     mobility = std::max(mobility, rigid_mobility(row));
     fastest = std::max(fastest, std::abs(row.bias[0] - row.target) / std::sqrt(rigid_mobility(row)));
   });
-  for (const int body : bodies()) std::copy_n(u_ + 6 * body, 6, work_.u.data() + 6 * body);
+  for (const int body : bodies()) std::copy_n(u_ + 6 * body, 6, steps_.u.data() + 6 * body);
   (void)solve_stage(kProofPenalty, 1e-3 * tolerance_ / std::sqrt(mobility), kThorough);
   (void)evaluate(kProofPenalty);
   double gap = 0.0, free = 0.0, found = 0.0;  // squares
   for (const int body : bodies()) {
     for (int k = 6 * body; k < 6 * body + 6; ++k) {
-      const double u = work_.u[at(k)], u_free = work_.u_free[at(k)], g = u - u_free - work_.error[at(k)];
+      const double u = steps_.u[at(k)], u_free = work_.u_free[at(k)], g = u - u_free - steps_.error[at(k)];
       gap += g * g, free += u_free * u_free, found += u * u;
     }
   }
   double sum = 0.0, scaled = 0.0;
-  each_row([&](const Row& row, const NewtonRow& newton) {
+  each_law([&](const Row& row, const NewtonLaw& newton) {
     sum += newton.law.lambda[0];
     if (newton.law.lambda[0] > 0.0) scaled += newton.law.lambda[0] * (row.target - row.bias[0]);
   });
@@ -419,10 +432,10 @@ bool GroupProblem::is_infeasible() {
 
 /// What an infeasible group is left with: contacts as stiff dampers, which share what is violated.
 void GroupProblem::share_violation() {
-  each_row([](const Row&, NewtonRow& newton) { std::fill_n(newton.center, 3, 0.0); });
-  for (const int body : bodies()) std::copy_n(u_ + 6 * body, 6, work_.u.data() + 6 * body);
+  each_law([](const Row&, NewtonLaw& newton) { std::fill_n(newton.center, 3, 0.0); });
+  for (const int body : bodies()) std::copy_n(u_ + 6 * body, 6, steps_.u.data() + 6 * body);
   (void)solve_stage(kFirstPenalty, 0.1 * tolerance_, kQuick);  // the best is kept in any case
-  each_row([](Row& row, const NewtonRow& newton) { std::copy_n(newton.law.lambda, 3, row.lambda); });
+  each_law([](Row& row, const NewtonLaw& newton) { std::copy_n(newton.law.lambda, 3, row.lambda); });
   apply_impulses();
   measure();
 }
@@ -436,14 +449,14 @@ void GroupProblem::augment(const Care& care) {
   });
   const int last = iterations_ + care.max_iterations;
   for (double penalty = kFirstPenalty; iterations_ < last && penalty > kLeastPenalty && has_room_ && !is_solved();) {
-    each_row([](const Row& row, NewtonRow& newton) { std::copy_n(row.lambda, 3, newton.center); });
-    for (const int body : bodies()) std::copy_n(u_ + 6 * body, 6, work_.u.data() + 6 * body);
+    each_law([](const Row& row, NewtonLaw& newton) { std::copy_n(row.lambda, 3, newton.center); });
+    for (const int body : bodies()) std::copy_n(u_ + 6 * body, 6, steps_.u.data() + 6 * body);
     if (!solve_stage(penalty, std::min(0.1 * tolerance_, care.stage_error * residual_) / std::sqrt(mobility), care)) {
       if (!has_room_) break;
       penalty /= kGrowth;
       continue;
     }
-    each_row([](Row& row, const NewtonRow& newton) { std::copy_n(newton.law.lambda, 3, row.lambda); });
+    each_law([](Row& row, const NewtonLaw& newton) { std::copy_n(newton.law.lambda, 3, row.lambda); });
     apply_impulses();
     const double before = best_;
     measure();
@@ -541,13 +554,23 @@ int GroupProblem::solve(bool is_nearly_solved) {
 
 }  // namespace
 
-GroupScratch::GroupScratch(std::size_t bodies, std::size_t row_capacity, int levels)
-    : system(bodies, row_capacity), rows(new NewtonRow[row_capacity]), before(new double[3 * row_capacity]) {
-  if (levels > 0) {
-    packed = std::make_unique<PackedSweeps>(bodies, row_capacity);
-    clusters.reset(new ClusterScratch{{bodies, row_capacity}, {bodies, row_capacity, levels - 1}});
-  }
-  for (std::vector<double>* v : {&u, &u_free, &u_start, &error, &step}) v->assign(6 * bodies, 0.0);
+StepScratch::StepScratch(std::size_t bodies, std::size_t rows)
+    : factors(std::make_shared<FactorStore>(bodies)),
+      laws(new NewtonLaw[rows]),
+      before(new double[3 * rows]),
+      packed(std::make_unique<PackedSweeps>(bodies, rows)) {
+  for (std::vector<double>* v : {&u, &u_start, &error, &step}) v->assign(6 * bodies, 0.0);
+}
+
+StepScratch::~StepScratch() = default;
+
+GroupScratch::GroupScratch(std::size_t bodies, std::size_t row_capacity, std::shared_ptr<StepScratch> shared,
+                           int levels)
+    : steps(std::move(shared)),
+      system(bodies, row_capacity, steps->factors),
+      rows(new NewtonRow[row_capacity]),
+      u_free(6 * bodies) {
+  if (levels > 0) clusters.reset(new ClusterScratch{{bodies, row_capacity}, {bodies, row_capacity, steps, levels - 1}});
 }
 
 GroupScratch::~GroupScratch() = default;

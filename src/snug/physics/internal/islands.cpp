@@ -66,6 +66,7 @@ void build_islands(const WorldInput& input, Scratch& work) {
     island.end_row = island.first_row;  // filled below
   }
   work.row_count = rows;
+  work.patch_order.resize(work.patches.size());
   for (std::size_t i = 0; i < work.patches.size(); ++i) {
     Patch& patch = work.patches[i];
     Island& island = work.islands[static_cast<std::size_t>(patch.island)];

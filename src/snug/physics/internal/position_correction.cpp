@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "snug/physics/internal/scratch.hpp"
 
@@ -26,8 +27,8 @@ constexpr double kRelaxation = 1.3;
 
 }  // namespace
 
-PositionCorrection::PositionCorrection(std::size_t bodies, std::size_t rows)
-    : normals_(new Normal[rows]), has_moved_(bodies + 1) {
+PositionCorrection::PositionCorrection(std::size_t bodies, std::size_t rows, std::shared_ptr<Row[]> room)
+    : room_(std::move(room)), normals_(reinterpret_cast<Normal*>(room_.get())), has_moved_(bodies + 1) {
   runs_.reserve(rows);
   visited_.reserve(rows);
 }

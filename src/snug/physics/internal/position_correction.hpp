@@ -16,7 +16,8 @@ struct Contact;
 /// visited of which a body has moved: mostly a small part. Never allocates after construction.
 class PositionCorrection {
  public:
-  PositionCorrection(std::size_t bodies, std::size_t rows);
+  /// `room`: memory for as many rows, with nothing in it that is needed while run() works.
+  PositionCorrection(std::size_t bodies, std::size_t rows, std::shared_ptr<Row[]> room);
 
   /// Adds to `shift`, 6 numbers per active body in whitened coordinates, zero at first. `is_infeasible`: the overlaps
   /// cannot all be mended, and more than the first sweeps only push them to and fro.
@@ -51,7 +52,10 @@ class PositionCorrection {
   double visit(const Run& run, const Sweep& sweep, double* shift);
   void take_moved();
 
-  std::unique_ptr<Normal[]> normals_;
+  static_assert(sizeof(Normal) <= sizeof(Row) && alignof(Normal) <= alignof(Row));
+
+  std::shared_ptr<Row[]> room_;
+  Normal* normals_;  ///< in room_
   std::size_t count_ = 0;
   std::vector<Run> runs_;
   std::vector<std::size_t> visited_;  ///< runs

@@ -120,8 +120,6 @@ OpenGroup::OpenGroup(std::size_t rows) : copies_(new Row[rows]), source_(new int
 
 void OpenGroup::add_idle(const Row& row, int index) {
   IdleRow& idle = idle_[idle_count_++];
-  std::copy_n(row.a(0), 6, idle.a);
-  std::copy_n(row.b(0), 6, idle.b);
   idle.least = row.target - row.bias[0];
   idle.ia = row.ia;
   idle.ib = row.ib;
@@ -153,13 +151,14 @@ std::size_t OpenGroup::wake(const double* u) {
   for (std::size_t i = 0; i < idle_count_;) {
     const IdleRow& idle = idle_[i];
     Pair s{};
-    if (idle.ia >= 0) s = dot(idle.a, u + 6 * idle.ia);
-    if (idle.ib >= 0) s += dot(idle.b, u + 6 * idle.ib);
+    const Row& row = first_[idle.row];
+    if (idle.ia >= 0) s = dot(row.a(0), u + 6 * idle.ia);
+    if (idle.ib >= 0) s += dot(row.b(0), u + 6 * idle.ib);
     if (s[0] + s[1] >= idle.least) {
       ++i;
       continue;
     }
-    copies_[copy_count_] = first_[idle.row];
+    copies_[copy_count_] = row;
     source_[copy_count_++] = idle.row;
     ++woken;
     idle_[i] = idle_[--idle_count_];

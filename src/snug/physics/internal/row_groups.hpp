@@ -57,6 +57,9 @@ class OpenGroup {
  public:
   explicit OpenGroup(std::size_t rows);
 
+  /// Its memory for copies of rows: free for other uses while no group is open.
+  [[nodiscard]] const std::shared_ptr<Row[]>& room() const { return copies_; }
+
   /// The rows of a group behind each other. `groups` stays as it is until close(). `pool`:
   /// threads to use, or nullptr.
   std::span<Row> open(const RowGroups& groups, std::size_t group, WorkerPool* pool);
@@ -67,8 +70,7 @@ class OpenGroup {
 
  private:
   /// What it takes to see whether an idle row stays idle.
-  struct alignas(16) IdleRow {
-    double a[6], b[6];
+  struct IdleRow {
     double least;  ///< m/s, of the normal velocity that its bodies make
     std::int32_t ia, ib;
     std::int32_t row;  ///< of the island
@@ -76,7 +78,7 @@ class OpenGroup {
   void add_idle(const Row& row, int index);
 
   Row* first_ = nullptr;             ///< of the island
-  std::unique_ptr<Row[]> copies_;    ///< of the group
+  std::shared_ptr<Row[]> copies_;    ///< of the group
   std::unique_ptr<int[]> source_;    ///< of each copy: its row of the island
   std::size_t copy_count_ = 0;       ///< 0: the group is the island itself
   std::unique_ptr<IdleRow[]> idle_;  ///< of the group

@@ -69,10 +69,9 @@ struct PairVisit {
 /// Maps impulses to velocities of one moving body: v = T u with T T^T = inverse mass, so that every row of the
 /// contact problem is J T and the mass disappears from the sweeps.
 struct Whitening {
-  bool is_dense = false;
   double linear = 0.0;                ///< 1/sqrt(mass)
   Matrix3 angular = Matrix3::Zero();  ///< R_WI diag(1/sqrt(I))
-  Matrix6 dense = Matrix6::Zero();    ///< T of a body with an implicit force element
+  const Matrix6* dense = nullptr;     ///< T of a body with an implicit force element, in Scratch::dense_whitening
 };
 
 /// The contacts of one pair: they share bodies, normal and law.
@@ -165,16 +164,17 @@ struct Scratch {
   bool knows_state = false;
   bool knows_pairs = false;  ///< the memories of pairs hold
   std::vector<BodyMemory> memories;
-  std::vector<PairMemory> pair_memories;
-  std::vector<PairVisit> visits;  ///< of each pair, if has_visits
+  BoundedVector<PairMemory> pair_memories;  ///< of each pair
+  BoundedVector<PairVisit> visits;          ///< of each pair, if has_visits
   bool has_visits = false;
   std::size_t last_rows = 0;  ///< rows of the last step
 
   std::vector<BodyWork> bodies;
   std::vector<int> active;  ///< bodies that move in this step; [0, active_count)
   int active_count = 0;
-  std::vector<ElementQuery> carriers;  ///< of each element in use, at the middle of the step
-  std::vector<Whitening> whitening;    ///< by active index
+  std::vector<ElementQuery> carriers;      ///< of each element in use, at the middle of the step
+  std::vector<Whitening> whitening;        ///< by active index
+  BoundedVector<Matrix6> dense_whitening;  ///< by active index, where there are elements
   std::vector<Vector3>
       last_torque;            ///< N m s, by active index: of the contacts of the step before, where that turns fast
   std::vector<double> u;      ///< 6 per active body
@@ -186,7 +186,7 @@ struct Scratch {
   BoundedVector<Contact> contacts;             ///< by patch
   std::vector<FrictionPoint> friction_points;  ///< of each contact, where its patch says so; empty: no law needs them
   PairContacts no_room;                        ///< where contacts go that are too many
-  std::vector<int> patch_order;                ///< patches by island
+  BoundedVector<int> patch_order;              ///< patches by island
   BoundedVector<Row> rows;
   int row_count = 0;  ///< of this step's islands
   BoundedVector<ContactReport> reports;
@@ -202,11 +202,11 @@ struct Scratch {
   LostImpulses lost_impulses;
 
   std::vector<std::uint64_t> keys, old_keys, new_keys;  ///< of pairs: all, those before, those of boxes that moved
-  std::vector<int> pair_origin;                         ///< of each key: its place among the old ones
+  BoundedVector<int> pair_origin;                       ///< of each key: its place among the old ones
   std::vector<int> moved;
   std::vector<char> is_moved;
   std::vector<int> sweep_order;
-  std::vector<char> pair_done;
+  BoundedVector<char> pair_done;           ///< of each pair
   std::vector<char> is_moving;             ///< of each body, side by side for the walk over the pairs
   std::vector<std::uint64_t> still_since;  ///< of each body: stamp of the first step in its present pose
 };

@@ -430,7 +430,7 @@ void arrange_planes(const Island& island, bool is_as_one_slab, Scratch& work) {
 }
 
 SharedSupports::SharedSupports(std::size_t bodies, std::size_t patches, std::size_t contact_count)
-    : first(bodies, -1), next(patches, -1) {
+    : first(bodies, -1), next(patches) {
   plane.reserve(patches);
   points.reserve(contact_count);
   loads.reserve(contact_count);
@@ -444,6 +444,7 @@ SharedSupports::SharedSupports(std::size_t bodies, std::size_t patches, std::siz
 void mark_covered_contacts(const WorldModel& model, WorldState& state, Scratch& work) {
   SharedSupports& shared = work.shared_supports;
   shared.touched.clear();
+  shared.next.resize(work.patches.size());
   shared.orders.clear();
   shared.order.clear();
   shared.ascending.clear();

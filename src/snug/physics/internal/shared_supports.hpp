@@ -46,7 +46,7 @@ struct SharedSupports {
   SharedSupports(std::size_t bodies, std::size_t patches, std::size_t contacts);
 
   std::vector<int> first;    ///< of each body: the first of its patches with fixed supports, or -1
-  std::vector<int> next;     ///< of each patch: the next of the same body, or -1
+  BoundedVector<int> next;   ///< of each patch: the next of the same body, or -1
   std::vector<int> touched;  ///< that have such patches
   std::vector<int> plane;    ///< patches of one plane
   std::vector<SupportPoint> points;

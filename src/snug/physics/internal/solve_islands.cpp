@@ -291,6 +291,7 @@ void find_last_torques(const WorldModel& model, const WorldState& state, Scratch
 
 void free_motion(const WorldModel& model, const WorldInput& input, const WorldState& state, Scratch& work) {
   const double dt = model.settings.dt;
+  if (!input.elements.empty()) work.dense_whitening.resize(static_cast<std::size_t>(work.active_count));
   find_last_torques(model, state, work);
   for_ranges(work.pool, work.bodies.size(), [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) {

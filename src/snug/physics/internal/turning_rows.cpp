@@ -10,11 +10,11 @@ namespace {
 
 /// Whitened row of the angular velocity along d.
 void fill_axis(const Whitening& whitening, const Vector3& d, double* out) {
-  if (whitening.is_dense) {
+  if (whitening.dense != nullptr) {
     Vector6 j;
     j << Vector3::Zero(), d;
     Eigen::Map<Vector6> row(out);
-    row = whitening.dense.triangularView<Eigen::Upper>().transpose() * j;
+    row = whitening.dense->triangularView<Eigen::Upper>().transpose() * j;
     return;
   }
   for (int j = 0; j < 3; ++j) {

@@ -15,7 +15,7 @@ Whitening plain_whitening(const WorldModel::MassProperties& mass, const Matrix3&
 Vector6 whiten(const Whitening& whitening, const Vector3& linear, const Vector3& angular) {
   Vector6 v;
   v << linear, angular;
-  if (whitening.is_dense) return whitening.dense.triangularView<Eigen::Upper>().solve(v);
+  if (whitening.dense != nullptr) return whitening.dense->triangularView<Eigen::Upper>().solve(v);
   Vector6 u;
   u.head<3>() = linear / whitening.linear;
   // The columns of the angular part are orthogonal: its inverse is its transpose over the squared lengths.
@@ -26,8 +26,8 @@ Vector6 whiten(const Whitening& whitening, const Vector3& linear, const Vector3&
 
 void unwhiten(const Whitening& whitening, const double* u, Vector3& linear, Vector3& angular) {
   const Eigen::Map<const Vector6> map(u);
-  if (whitening.is_dense) {
-    const Vector6 v = whitening.dense.triangularView<Eigen::Upper>() * map;
+  if (whitening.dense != nullptr) {
+    const Vector6 v = whitening.dense->triangularView<Eigen::Upper>() * map;
     linear = v.head<3>();
     angular = v.tail<3>();
     return;
