@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 
 #include "snug/core/worker_pool.hpp"
@@ -28,6 +29,19 @@ void for_ranges(WorkerPool& pool, std::size_t count, const Job& job) {
 template <class Job>
 void for_ranges(WorkerPool* pool, std::size_t count, const Job& job) {
   pool != nullptr ? for_ranges(*pool, count, job) : job(std::size_t{0}, count);
+}
+
+/// The largest of value(first, end) over such ranges, and of 0.
+template <class Value>
+double largest_of_ranges(WorkerPool* pool, std::size_t count, const Value& value) {
+  std::atomic<double> largest{0.0};
+  for_ranges(pool, count, [&](std::size_t first, std::size_t end) {
+    const double mine = value(first, end);
+    double most = largest;
+    while (mine > most && !largest.compare_exchange_weak(most, mine)) {
+    }
+  });
+  return largest;
 }
 
 }  // namespace snug::physics::internal

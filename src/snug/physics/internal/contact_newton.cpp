@@ -2,7 +2,6 @@
 #include "snug/physics/internal/contact_newton.hpp"
 
 #include <algorithm>
-#include <atomic>
 
 #include "snug/physics/internal/chunks.hpp"
 
@@ -67,14 +66,26 @@ GroupOutcome solve_groups(const Residuals& residuals, double* u, NewtonScratch& 
 }  // namespace
 
 double worst_residual(const SolverThreads* threads, const Row* first, const Row* end, const double* u) noexcept {
-  std::atomic<double> worst{0.0};
-  for_ranges(pool_of(threads), static_cast<std::size_t>(end - first), [&](std::size_t begin, std::size_t past) {
-    const double mine = worst_residual(first + begin, first + past, u);
-    double most = worst;
-    while (mine > most && !worst.compare_exchange_weak(most, mine)) {
+  return largest_of_ranges(
+      pool_of(threads), static_cast<std::size_t>(end - first),
+      [&](std::size_t begin, std::size_t past) { return worst_residual(first + begin, first + past, u); });
+}
+
+void apply_impulses(const Row* first, const Row* end, double* u, WorkerPool* pool) noexcept {
+  if (pool == nullptr || !is_shared(*pool, static_cast<std::size_t>(end - first))) {
+    for (const Row* row = first; row != end; ++row) apply(*row, row->lambda, u);
+    return;
+  }
+  // Each half of the bodies takes its own from all rows.
+  const Row& middle = first[(end - first) / 2];
+  const int cut = std::max(middle.ia, middle.ib);
+  pool->run(2, [&](int half, int) {
+    const auto is_of_half = [&](int body) { return body >= 0 && (body < cut) == (half == 0); };
+    for (const Row* row = first; row != end; ++row) {
+      if (is_of_half(row->ia)) add_scaled(u + 6 * row->ia, row->a(0), row->lambda);
+      if (is_of_half(row->ib)) add_scaled(u + 6 * row->ib, row->b(0), row->lambda);
     }
   });
-  return worst;
 }
 
 int newton_rows(const Residuals& residuals, Row* first, Row* end, double* u, NewtonScratch& work) noexcept {

@@ -96,6 +96,9 @@ int solve_group(const Residuals& residuals, std::span<Row> rows, double* u, Grou
 /// On as many threads as there are. `threads` may be nullptr.
 double worst_residual(const SolverThreads* threads, const Row* first, const Row* end, const double* u) noexcept;
 
+/// u of all impulses added to that without, body by body in the order of the rows. `pool`: threads to use, or nullptr.
+void apply_impulses(const Row* first, const Row* end, double* u, WorkerPool* pool) noexcept;
+
 /// solve_group() for the rows of an island.
 int newton_rows(const Residuals& residuals, Row* first, Row* end, double* u, NewtonScratch& work) noexcept;
 

@@ -127,8 +127,8 @@ SolveResult solve_rows(const StepSettings& settings, const Residuals& residuals,
                        NewtonScratch& newton) noexcept {
   const Patience patience = end - first <= kSmallIsland ? kSmall : kLarge;
   bool is_newton_done = false;
-  double changes[2] = {};                                                 // of the last two sweeps
-  for (Row* row = first; row != end; ++row) apply(*row, row->lambda, u);  // warm start
+  double changes[2] = {};                                        // of the last two sweeps
+  apply_impulses(first, end, u, pool_of(newton.group.threads));  // warm start
   SolveResult result;
   while (result.iterations < settings.max_sweeps) {
     const double change = sweep_rows(first, end, u, result.iterations % 2 == 0);

@@ -104,13 +104,13 @@ class GroupProblem {
     for (Row* row = first_; row != end_; ++row, ++law) visit(*row, *law);
   }
   [[nodiscard]] std::span<const int> bodies() const { return work_.system.bodies(); }
+  [[nodiscard]] std::size_t row_count() const { return static_cast<std::size_t>(end_ - first_); }
   [[nodiscard]] bool is_solved() const { return best_ <= tolerance_; }
   void start();
   void add_row(Row& row);
   void wake();
   void apply_impulses();
   void measure();
-  void find_residuals();
   void keep_best();
   void restore_best();
   bool take_step();
@@ -174,39 +174,41 @@ void GroupProblem::add_row(Row& row) {
 void GroupProblem::start() {
   work_.system.begin();
   for (Row* row = first_; row != end_; ++row) add_row(*row);
-  residual_ = best_ = worst_residual(first_, end_, u_);
+  residual_ = best_ = worst_residual(threads_, first_, end_, u_);
 }
 
 /// Takes in the idle contacts that close.
 void GroupProblem::wake() {
   if (open_group_ == nullptr) return;
-  for (std::size_t count = open_group_->wake(u_); count > 0; --count) add_row(*end_++);
+  for (std::size_t count = open_group_->wake(u_, pool()); count > 0; --count) add_row(*end_++);
 }
 
 /// u from the impulses of the rows.
 void GroupProblem::apply_impulses() {
   for (const int body : bodies()) std::copy_n(work_.u_free.data() + 6 * body, 6, u_ + 6 * body);
-  for (const Row* row = first_; row != end_; ++row) apply(*row, row->lambda, u_);
+  internal::apply_impulses(first_, end_, u_, pool());
 }
 
 void GroupProblem::measure() {
   wake();
-  find_residuals();
-  residual_ = 0.0;
-  each_row([&](const Row&, const NewtonRow& newton) { residual_ = std::max(residual_, newton.residual); });
-  keep_best();
-}
-
-void GroupProblem::find_residuals() {
-  for_ranges(pool(), static_cast<std::size_t>(end_ - first_), [this](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i) work_.rows[i].residual = natural_map(first_[i], u_);
+  residual_ = largest_of_ranges(pool(), row_count(), [this](std::size_t first, std::size_t end) {
+    double largest = 0.0;
+    for (std::size_t i = first; i < end; ++i) {
+      double& residual = work_.rows[i].residual;
+      residual = natural_map(first_[i], u_);
+      largest = std::max(largest, residual);
+    }
+    return largest;
   });
+  keep_best();
 }
 
 void GroupProblem::keep_best() {
   if (!(residual_ < best_)) return;
   best_ = residual_;
-  each_row([](const Row& row, NewtonRow& newton) { std::copy_n(row.lambda, 3, newton.best); });
+  for_ranges(pool(), row_count(), [this](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) std::copy_n(first_[i].lambda, 3, work_.rows[i].best);
+  });
 }
 
 void GroupProblem::restore_best() {
@@ -488,7 +490,7 @@ void GroupProblem::solve_clusters() {
   int rings = is_large() ? 1 : 0, again = 0;
   for (int round = 0; round < kClusterRounds && !is_solved() && has_room_; ++round) {
     const double most = is_large() && again < kAgain ? kMostClustered : 0.5;
-    if (!clusters.rows.find(first_, work_.rows.get(), work_.system.patches(), tolerance_, rings, most)) {
+    if (!clusters.rows.find(first_, work_.rows.get(), work_.system.patches(), tolerance_, rings, most, pool())) {
       ++again;
       is_large() ? run_sweeps(kFirstSweeps, kFewUnsolved) : run_cycles(kCyclesWithoutClusters);
       rings = std::max(0, rings - 1);

@@ -375,7 +375,9 @@ void PackedSweeps::each_row(WorkerPool* pool, const Visit& visit) {
 void PackedSweeps::fill(const Row* rows, WorkerPool* pool) {
   Points none{};
   std::fill_n(none.start[0], kLanes, 1.0F);
-  std::fill(points_.begin(), points_.end(), none);
+  for_ranges(pool, points_.size(), [&](std::size_t first, std::size_t end) {
+    std::fill(points_.begin() + first, points_.begin() + end, none);
+  });
   each_row(pool, [&](int index, Points& p, int lane) {
     const Row& row = rows[index];
     const int first = row.ia >= 0 ? 0 : 6, end = row.ib >= 0 ? 12 : 6;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "snug/physics/internal/chunks.hpp"
 #include "snug/physics/internal/contact_system.hpp"
 
 namespace snug::physics::internal {
@@ -82,7 +83,7 @@ std::size_t RowClusters::join() {
   return count;
 }
 
-void RowClusters::copy_rows(const Row* rows) {
+void RowClusters::copy_rows(const Row* rows, WorkerPool* pool) {
   const auto cluster_of = [&](const RowPatch& patch) -> int& {
     return cluster_[at(root_of(std::max(patch.ia, patch.ib)))];
   };
@@ -96,17 +97,21 @@ void RowClusters::copy_rows(const Row* rows) {
   for (std::size_t& end : ends_) begin += std::exchange(end, begin);
   for (const RowPatch* patch : bearing_) {
     std::size_t& end = ends_[at(cluster_of(*patch))];
-    for (int i = patch->first; i < patch->first + patch->count; ++i, ++end) copies_[end] = rows[i], source_[end] = i;
+    for (int i = patch->first; i < patch->first + patch->count; ++i, ++end) source_[end] = i;
   }
+  if (ends_.empty()) return;
+  for_ranges(pool, ends_.back(), [&](std::size_t first, std::size_t past) {
+    for (std::size_t i = first; i < past; ++i) copies_[i] = rows[source_[i]];
+  });
 }
 
 bool RowClusters::find(const Row* rows, const NewtonRow* newton, std::span<const RowPatch> patches, double residual,
-                       int rings, double most) {
+                       int rings, double most, WorkerPool* pool) {
   mark_unsolved(rows, newton, patches, residual);
   for (int ring = 1; ring <= rings; ++ring) add_ring(ring);
   const RowPatch& last = patches.back();
   if (static_cast<double>(join()) > most * (last.first + last.count)) return false;
-  copy_rows(rows);
+  copy_rows(rows, pool);
   return true;
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "snug/core/worker_pool.hpp"
 #include "snug/physics/internal/contact_row.hpp"
 
 namespace snug::physics::internal {
@@ -22,7 +23,7 @@ class RowClusters {
   /// Takes the bodies of all rows above `residual` and, `rings` times, what touches these; then the rows between them.
   /// False when these are more than the fraction `most` of the island: then it has no parts.
   [[nodiscard]] bool find(const Row* rows, const NewtonRow* newton, std::span<const RowPatch> patches, double residual,
-                          int rings, double most);
+                          int rings, double most, WorkerPool* pool);
   /// Copies of the rows of each, in the order of the island.
   [[nodiscard]] std::size_t count() const { return ends_.size(); }
   [[nodiscard]] std::span<Row> operator[](std::size_t cluster);
@@ -34,7 +35,7 @@ class RowClusters {
   void mark_unsolved(const Row* rows, const NewtonRow* newton, std::span<const RowPatch> patches, double residual);
   void add_ring(int ring);
   [[nodiscard]] std::size_t join();
-  void copy_rows(const Row* rows);
+  void copy_rows(const Row* rows, WorkerPool* pool);
 
   std::vector<const RowPatch*> bearing_;  ///< open ones join nothing and are left out
   std::vector<int> ring_;                 ///< of each body: the ring that took it, or -1

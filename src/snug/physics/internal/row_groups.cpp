@@ -17,7 +17,13 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 RowGroups::RowGroups(std::size_t bodies, std::size_t rows)
-    : state_(new State[rows]), miss_(new double[rows]), parent_(bodies), group_(bodies), order_(new int[rows]) {
+    : state_(new State[rows]),
+      miss_(new double[rows]),
+      parent_(bodies),
+      group_(bodies),
+      seen_in_(bodies),
+      order_(new int[rows]) {
+  bodies_.reserve(bodies);
   groups_.reserve(bodies);
 }
 
@@ -30,9 +36,14 @@ int RowGroups::root_of(int body) {
 }
 
 void RowGroups::begin_bodies(const Row* first, const Row* end) {
+  ++search_;
+  bodies_.clear();
   for (const Row* row = first; row != end; ++row) {
     for (const int body : {row->ia, row->ib}) {
-      if (body >= 0) parent_[at(body)] = body, group_[at(body)] = kNone;
+      if (body < 0 || seen_in_[at(body)] == search_) continue;
+      seen_in_[at(body)] = search_;
+      parent_[at(body)] = body, group_[at(body)] = kNone;
+      bodies_.push_back(body);
     }
   }
 }
@@ -77,9 +88,9 @@ double RowGroups::find(Row* first, Row* end, const double* u, double residual, W
   return worst;
 }
 
-int RowGroups::group_of(const Row& row) {
-  const int a = row.ia >= 0 ? group_[at(root_of(row.ia))] : kNone;
-  const int b = row.ib >= 0 ? group_[at(root_of(row.ib))] : kNone;
+int RowGroups::group_of(const Row& row) const {
+  const int a = row.ia >= 0 ? group_[at(row.ia)] : kNone;
+  const int b = row.ib >= 0 ? group_[at(row.ib)] : kNone;
   if (row.ia < 0) return b;
   return row.ib < 0 || a == b ? a : kNone;  // between two groups: of none
 }
@@ -93,6 +104,9 @@ void RowGroups::number_groups() {
     if (group == kNone) continue;
     if (group == kUnsolved) group = static_cast<int>(groups_.size()), groups_.push_back({});
     ++groups_[at(group)].rows;
+  }
+  for (const int body : bodies_) {
+    if (parent_[at(body)] != body) group_[at(body)] = group_[at(root_of(body))];
   }
   sort_rows();
 }
@@ -146,19 +160,26 @@ std::span<Row> OpenGroup::open(const RowGroups& groups, std::size_t group, Worke
   return {copies_.get(), copy_count_};
 }
 
-std::size_t OpenGroup::wake(const double* u) {
+bool OpenGroup::closes(const IdleRow& idle, const double* u) const {
+  const Row& row = first_[idle.row];
+  Pair s{};
+  if (idle.ia >= 0) s = dot(row.a(0), u + 6 * idle.ia);
+  if (idle.ib >= 0) s += dot(row.b(0), u + 6 * idle.ib);
+  return !(s[0] + s[1] >= idle.least);
+}
+
+std::size_t OpenGroup::wake(const double* u, WorkerPool* pool) {
+  for_ranges(pool, idle_count_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) idle_[i].closes = closes(idle_[i], u);
+  });
   std::size_t woken = 0;
   for (std::size_t i = 0; i < idle_count_;) {
     const IdleRow& idle = idle_[i];
-    Pair s{};
-    const Row& row = first_[idle.row];
-    if (idle.ia >= 0) s = dot(row.a(0), u + 6 * idle.ia);
-    if (idle.ib >= 0) s += dot(row.b(0), u + 6 * idle.ib);
-    if (s[0] + s[1] >= idle.least) {
+    if (!idle.closes) {
       ++i;
       continue;
     }
-    copies_[copy_count_] = row;
+    copies_[copy_count_] = first_[idle.row];
     source_[copy_count_++] = idle.row;
     ++woken;
     idle_[i] = idle_[--idle_count_];

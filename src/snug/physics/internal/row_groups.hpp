@@ -39,14 +39,17 @@ class RowGroups {
   void measure(const double* u, WorkerPool* pool);
   void number_groups();
   void sort_rows();
-  [[nodiscard]] int group_of(const Row& row);
+  [[nodiscard]] int group_of(const Row& row) const;
 
   Row* first_ = nullptr;  ///< of the island
   std::size_t row_count_ = 0;
   std::unique_ptr<State[]> state_;
-  std::unique_ptr<double[]> miss_;  ///< m/s, of each row that is not idle
-  std::vector<int> parent_;         ///< union-find over bodies
-  std::vector<int> group_;          ///< of each root: its number, or kNone, kUnsolved
+  std::unique_ptr<double[]> miss_;     ///< m/s, of each row that is not idle
+  std::vector<int> parent_;            ///< union-find over bodies
+  std::vector<int> group_;             ///< of each root: its number, or kNone, kUnsolved; in the end of each body
+  std::vector<int> bodies_;            ///< of the island
+  std::vector<std::int64_t> seen_in_;  ///< of each body: the search that last met it
+  std::int64_t search_ = 0;
   std::vector<Group> groups_;
   std::unique_ptr<int[]> order_;
 };
@@ -64,7 +67,7 @@ class OpenGroup {
   /// threads to use, or nullptr.
   std::span<Row> open(const RowGroups& groups, std::size_t group, WorkerPool* pool);
   /// Adds the idle rows of the group that close as bodies move now. Returns how many.
-  std::size_t wake(const double* u);
+  std::size_t wake(const double* u, WorkerPool* pool);
   /// Gives the impulses back to the island.
   void close();
 
@@ -74,8 +77,10 @@ class OpenGroup {
     double least;  ///< m/s, of the normal velocity that its bodies make
     std::int32_t ia, ib;
     std::int32_t row;  ///< of the island
+    bool closes;
   };
   void add_idle(const Row& row, int index);
+  [[nodiscard]] bool closes(const IdleRow& idle, const double* u) const;
 
   Row* first_ = nullptr;             ///< of the island
   std::shared_ptr<Row[]> copies_;    ///< of the group

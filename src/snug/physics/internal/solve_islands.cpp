@@ -1,6 +1,7 @@
 // Solves the islands of a step: free motion, contact rows, the contact solver, with Newton's method around it where
 // force elements act.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 
@@ -157,7 +158,13 @@ void solve_island(const WorldModel& model, const WorldInput& input, WorldState& 
   }
   Row* first = work.rows.begin() + island.first_row;
   Row* end = work.rows.begin() + island.end_row;
-  island.is_carried = keep_impulses(first, end, state, work);
+  // Rows that resist turning share what the pair keeps of it.
+  WorkerPool* pool = island.has_turning ? nullptr : pool_of(worker.newton.group.threads);
+  std::atomic<bool> is_carried{false};
+  for_ranges(pool, static_cast<std::size_t>(end - first), [&](std::size_t begin, std::size_t past) {
+    if (keep_impulses(first + begin, first + past, state, work)) is_carried = true;
+  });
+  island.is_carried = is_carried;
   worker.report.is_infeasible |= island.is_infeasible;
   worker.positions.run(model.settings, first, end, work.contacts.begin(), work.u.data(), island.is_infeasible,
                        work.shift.data());
