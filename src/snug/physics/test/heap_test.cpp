@@ -117,7 +117,7 @@ TEST(Heap, TakesLittleMemoryAtTheStart) {
     (void)step(model, {}, state, work);
   });
   ASSERT_TRUE(peak);
-  EXPECT_LE(*peak / model.bodies.size(), 20'000U);
+  EXPECT_LE(*peak / model.bodies.size(), 5'000U);
 }
 
 TEST(Heap, TakesLittleMemoryWhileItComesToRest) {
@@ -131,7 +131,7 @@ TEST(Heap, TakesLittleMemoryWhileItComesToRest) {
     for (int i = 0; i < 150; ++i) (void)step(model, {}, state, work);
   });
   ASSERT_TRUE(peak);
-  EXPECT_LE(*peak / model.bodies.size(), 20'000U);
+  EXPECT_LE(*peak / model.bodies.size(), 14'000U);
 }
 
 }  // namespace
