@@ -7,7 +7,7 @@ wheels="$(dirname "$0")/../bench/peers/workers/requirements.txt"
 jolt=jolt-physics@1.1.0
 wanted="$(cat "$wheels"; echo $jolt)"
 [ "$wanted" = "$(cat "$1/installed" 2>/dev/null || true)" ] && exit 0
-command -v npm >/dev/null 2>&1 || { echo "install-peers.sh: npm is missing: run scripts/install-deps.sh peers" >&2; exit 1; }
+command -v npm >/dev/null 2>&1 || { echo "install-peers.sh: npm is missing: run scripts/install-deps.sh python peers" >&2; exit 1; }
 
 echo "installing engines to compare with into $1 (1 GB)" >&2
 /usr/bin/python3 -m venv "$1"

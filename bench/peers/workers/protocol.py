@@ -7,9 +7,11 @@ the centre of the body, SI units. A body of mass 0 is fixed. Questions:
     {"do": [ACT, ...]}                        in this order; the answer is the state
     {"normal_force": [A, B]}                  N, summed over the last step; -1 is the plane
 
-The answer to a question that failed is {"error"}. ACT: {"steps": N}, {"set": BODY, "pose", "velocity"}, {"insert": BODY, "pose", "velocity"}, or {"push": BODY, "force",
-"torque"}, which acts about the centre of the body during the next step. State: {"poses", "velocities", "cpu", "failed"},
-the second but last in seconds of this process that steps took.
+The answer to a question that failed is {"error"}.
+
+ACT is {"steps": N}, {"set": BODY, "pose", "velocity"}, {"insert": BODY, "pose", "velocity"} or {"push": BODY, "force",
+"torque"}: a wrench about the centre of the body during the next step. A state is {"poses", "velocities", "cpu", "failed"};
+"cpu" is the processor time of this process that steps took, s.
 """
 
 import json
