@@ -14,22 +14,59 @@
 namespace snug::runs {
 namespace {
 
-constexpr double kStep = 2.0;        ///< times the scenario's, unless it is said
-constexpr double kTolerance = 1e-4;  ///< m/s, residual of contacts: it moves a box by 0.1 mm a second at most
-/// Of the limits. A load that moves no farther with the least friction is not run with more: such motions of 14 loads
-/// moved no more there (docs/decisions/0130).
-constexpr double kStill = 0.25;
+/// How finely a load is simulated (docs/decisions/0130, 0144).
+struct Fineness {
+  double steps;      ///< time step over the scenario's, unless it is said
+  double most_step;  ///< s, up to which the step is made larger than twice the scenario's
+  double tolerance;  ///< m/s, residual of contacts
+};
+constexpr Fineness kRigid{2.0, 0.0, 1e-4};
+/// Faces that give way say by their depth what a step left; rigid boxes would creep by it.
+constexpr Fineness kSoft{4.0, 0.004, 1e-3};
+
+/// Of the limits (docs/decisions/0144): a load that moves no farther with the least friction is not run with more; one
+/// that moves no farther with the least and with the most is not run with what lies between.
+constexpr double kStill = 0.5, kClear = 0.75;
+
+/// Whether all faces that can meet in the load give way.
+bool is_soft(const model::Scenario& scenario, const std::vector<model::PlacementEntry>& load) {
+  std::vector<model::MaterialId> boxes;
+  for (const model::PlacementEntry& one : load) {
+    const model::MaterialId material = model::find_parcel(scenario, one.parcel)->material;
+    if (std::ranges::find(boxes, material) == boxes.end()) boxes.push_back(material);
+  }
+  std::vector<model::MaterialId> all = boxes;
+  all.push_back(model::find_container(scenario, scenario.target)->material);
+  return std::ranges::all_of(boxes, [&](const model::MaterialId a) {
+    return std::ranges::all_of(all, [&](const model::MaterialId b) {
+      const std::optional<model::ContactParams> contact = model::find_contact(scenario, a, b);
+      return contact && contact->stiffness > 0.0;
+    });
+  });
+}
+
+/// Film moves a load while it is wound, and how far depends on the step.
+const Fineness& fineness_of(const model::Scenario& scenario, const std::vector<model::PlacementEntry>& load,
+                            const ShakeOptions& options) {
+  return options.hold != LoadHold::Film && is_soft(scenario, load) ? kSoft : kRigid;
+}
+
+/// s.
+double step_of(const Fineness& fineness, double own) {
+  return std::max(kRigid.steps * own, std::min(fineness.steps * own, fineness.most_step));
+}
 
 /// The target and the boxes of the load alone: robots, benches and feeders do not travel.
 model::Scenario travelling(model::Scenario scenario, const std::vector<model::PlacementEntry>& load, double friction,
-                           const std::optional<double>& time_step) {
+                           const ShakeOptions& options) {
+  const Fineness& fineness = fineness_of(scenario, load, options);
   std::erase_if(scenario.containers, [&](const model::Container& one) { return one.name != scenario.target; });
   scenario.bodies.clear();
   scenario.aligner.reset();
   scenario.drops.reset();
   scenario.solver.sleep.enabled = false;  // what drives it begins while it is at rest
-  scenario.solver.tolerance = std::max(scenario.solver.tolerance, kTolerance);
-  scenario.time_step = time_step.value_or(kStep * scenario.time_step);
+  scenario.solver.tolerance = std::max(scenario.solver.tolerance, fineness.tolerance);
+  scenario.time_step = options.time_step.value_or(step_of(fineness, scenario.time_step));
   const auto scale = [friction](model::ContactParams& params) {
     params.friction *= friction;
     if (params.edge_friction) *params.edge_friction *= friction;
@@ -60,8 +97,11 @@ void check(const model::Scenario& scenario, const std::vector<model::PlacementEn
           "above 0, at most 0.02 s");
 }
 
-/// Whether more friction cannot make a motion worse: a box fell, or the load hardly moved.
-bool is_decided(const ShakeRun& least) { return std::isinf(least.worst) || least.worst <= kStill; }
+/// Whether the other frictions cannot change the verdict: it fails already, or the load moves little.
+bool is_decided(const ShakeRun& least) { return least.worst > 1.0 || least.worst <= kStill; }
+bool is_decided(const ShakeRun& least, const ShakeRun& most) {
+  return most.worst > 1.0 || std::max(least.worst, most.worst) <= kClear;
+}
 
 /// At rest, and wound.
 std::size_t steps_before_motions(const ShakeOptions& options) { return options.hold == LoadHold::Film ? 2 : 1; }
@@ -80,8 +120,8 @@ std::vector<std::optional<ShakeRun>> run_motions(const model::Scenario& scenario
   return runs;
 }
 
-/// By friction, from the least on, then by motion. With the least friction every motion is run, with others those that
-/// are not decided by it.
+/// By friction, from the least on, then by motion: first the least friction, then the most, then those between, each
+/// with the motions that are not decided before.
 std::vector<std::vector<std::optional<ShakeRun>>> run_frictions(const model::Scenario& scenario,
                                                                 const std::vector<model::PlacementEntry>& load,
                                                                 const std::vector<ShakeMotion>& profile,
@@ -90,17 +130,29 @@ std::vector<std::vector<std::optional<ShakeRun>>> run_frictions(const model::Sce
   std::vector<std::vector<std::optional<ShakeRun>>> runs(frictions.size());
   std::vector<bool> is_wanted(profile.size() + steps_before_motions(options), true);
   const auto run = [&](std::size_t draw) {
-    runs[draw] =
-        run_motions(travelling(scenario, load, frictions[draw], options.time_step), load, profile, options, is_wanted);
+    runs[draw] = run_motions(travelling(scenario, load, frictions[draw], options), load, profile, options, is_wanted);
     for (std::optional<ShakeRun>& one : runs[draw]) {
       if (one) one->friction = frictions[draw];
     }
   };
+  const auto run_between = [&](std::size_t first, std::size_t end) {
+    if (std::ranges::find(is_wanted, true) == is_wanted.end()) return;
+    parallel_for(static_cast<int>(end - first), options.threads,
+                 [&](int i, int) { run(first + static_cast<std::size_t>(i)); });
+  };
   run(0);
+  const std::size_t last = frictions.size() - 1;
+  if (last == 0) return runs;
+  if (options.all_frictions) {
+    run_between(1, frictions.size());
+    return runs;
+  }
   for (std::size_t i = 0; i < is_wanted.size(); ++i) is_wanted[i] = !is_decided(*runs[0][i]);
-  if (std::ranges::find(is_wanted, true) == is_wanted.end()) return runs;
-  parallel_for(static_cast<int>(frictions.size()) - 1, options.threads,
-               [&](int i, int) { run(static_cast<std::size_t>(i) + 1); });
+  run_between(last, frictions.size());
+  for (std::size_t i = 0; i < is_wanted.size(); ++i) {
+    is_wanted[i] = is_wanted[i] && !is_decided(*runs[0][i], *runs[last][i]);
+  }
+  run_between(1, last);
   return runs;
 }
 

@@ -34,9 +34,10 @@ struct ShakeOptions {
   ShakeLimits limits = ShakeLimits::Boxes;
   int draws = 4;                         ///< of friction, beside the scenario's own
   std::uint64_t seed = 1;                ///< of the draws
+  bool all_frictions = false;            ///< every motion with each of them, also where one decides
   double shift = 0.020;                  ///< m, that a box may move at any time from where it stood
   double tilt = 0.105;                   ///< rad, that it may tip
-  std::optional<double> time_step = {};  ///< s; absent: twice the scenario's
+  std::optional<double> time_step = {};  ///< s; absent: the scenario's times 2, or 4 where all is soft
   int threads = 1;                       ///< results do not depend on it
 };
 
@@ -78,9 +79,10 @@ struct ShakeResult {
 
 /// The load at rest for half a second, film wound around it where it has some, then each motion of the profile from
 /// there. In the frame of the container: what accelerates it acts on each box as a force the other way. A container
-/// stays as it is, fixed on what carries it. Every motion is run with the least friction; with more only where no box
-/// falls and the load moves (a quarter of a limit). While the load rests under forces that keep it at rest, no steps
-/// are taken. Throws InputError for a load without boxes, a scenario without target and options out of range.
+/// stays as it is, fixed on what carries it. Every motion is run with the least friction; then with the most, where the
+/// load holds and moves by more than half a limit; then with those between, where it holds and comes near a limit.
+/// While the load rests under forces that keep it at rest, no steps are taken. Throws InputError for a load without
+/// boxes, a scenario without target and options out of range.
 [[nodiscard]] ShakeResult shake(const model::Scenario& scenario, const std::vector<model::PlacementEntry>& load,
                                 const std::vector<ShakeMotion>& profile, const ShakeOptions& options);
 

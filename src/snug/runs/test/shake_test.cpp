@@ -13,17 +13,17 @@
 namespace snug::runs {
 namespace {
 
-/// A pallet 1 m square with friction mu, and one box of this size in its middle.
-model::Scenario pallet(double friction, const Vector3& size) {
+/// A pallet 1 m square with friction mu, and one box of this size in its middle. `law`: what else contacts have.
+model::Scenario pallet(double friction, const Vector3& size, const std::string& law = "") {
   const std::string text =
       "name: pallet\ntime_step: 0.001\nmaterials: [{name: box}, {name: slab}]\n"
       "contacts:\n  pairs:\n"
       "    - {between: [box, slab], friction: " +
-      std::to_string(friction) +
-      ", restitution: 0}\n"
+      std::to_string(friction) + ", restitution: 0" + law +
+      "}\n"
       "    - {between: [box, box], friction: " +
-      std::to_string(friction) +
-      ", restitution: 0}\n"
+      std::to_string(friction) + ", restitution: 0" + law +
+      "}\n"
       "parcel_types: [{name: b, size: [" +
       std::to_string(size.x()) + ", " + std::to_string(size.y()) + ", " + std::to_string(size.z()) +
       "], mass: 2.0}]\n"
@@ -172,25 +172,59 @@ TEST(Shake, TakesNoStepsWhileTheLoadRestsAndSeesWhereItBeginsToSlide) {
   EXPECT_GT(slides.steps, 900);
 }
 
-TEST(Shake, RunsMoreFrictionsWhereTheLeastDoesNotDecide) {
+/// Sliding by these parts of the limit with the least friction, after half a second at rest.
+std::vector<ShakeRun> runs_that_slide(double part, bool all_frictions) {
   const Vector3 size(0.4, 0.4, 0.1);
+  const double mu = 0.3, seconds = 0.4;
   ShakeOptions options = exact();
   options.draws = 3;
-  const auto runs_at = [&](double acceleration, double seconds) {
+  options.all_frictions = all_frictions;
+  const auto shake_with = [&](double acceleration) {
     const ShakeMotion motion{
         "m", {{0.0, Vector3::Zero()}, {0.001, {acceleration, 0.0, 0.0}}, {seconds, {acceleration, 0.0, 0.0}}}};
-    return shake(pallet(0.3, size), in_the_middle(size), {motion}, options).runs;
+    return shake(pallet(mu, size), in_the_middle(size), {motion}, options).runs;
   };
-  EXPECT_EQ(runs_at(0.1 * 9.81, 0.4).size(), 2U) << "at rest, and the motion once: it stands";
-  const std::vector<ShakeRun> slides = runs_at(0.5 * 9.81, 0.4);
-  ASSERT_EQ(slides.size(), 8U) << "four frictions, each with its rest";
-  for (std::size_t i = 5; i < slides.size(); ++i) {
-    EXPECT_GT(slides[i].friction, slides[i - 1].friction);
-    EXPECT_LT(slides[i].worst, slides[i - 1].worst) << "less slides with more friction";
+  const double least = shake_with(0.1).front().friction;
+  return shake_with(least * mu * 9.81 + 2.0 * part * options.shift / (seconds * seconds));
+}
+
+TEST(Shake, RunsMoreFrictionsWhereTheLeastDoesNotDecide) {
+  EXPECT_EQ(runs_that_slide(0.3, false).size(), 2U) << "at rest, and the motion once: it moves little";
+  const std::vector<ShakeRun> moves = runs_that_slide(0.6, false);
+  ASSERT_EQ(moves.size(), 4U) << "with the least and with the most friction, each with its rest";
+  EXPECT_NEAR(moves[2].worst, 0.6, 0.05);
+  EXPECT_LT(moves[3].worst, 0.1);
+  EXPECT_EQ(runs_that_slide(0.95, false).size(), 8U) << "near the limit: all four";
+  EXPECT_EQ(runs_that_slide(1.5, false).size(), 2U) << "it does not hold, whatever others do";
+}
+
+TEST(Shake, RunsEveryFrictionWhereAllAreAskedFor) {
+  for (const double part : {0.3, 8.0}) {
+    const std::vector<ShakeRun> all = runs_that_slide(part, true);
+    ASSERT_EQ(all.size(), 8U) << "four frictions, each with its rest";
+    for (std::size_t i = 5; i < all.size(); ++i) {
+      EXPECT_GT(all[i].friction, all[i - 1].friction);
+      EXPECT_LT(all[i].worst, all[i - 1].worst) << "less slides with more friction";
+    }
+    EXPECT_EQ(all[4].boxes, runs_that_slide(part, false)[1].boxes);
   }
-  const std::vector<ShakeRun> falls = runs_at(0.9 * 9.81, 1.0);
-  ASSERT_EQ(falls.size(), 2U) << "nothing is worse than a box that falls";
-  EXPECT_TRUE(falls.back().boxes[0].fell);
+}
+
+TEST(Shake, TakesLargerStepsWhereAllFacesGiveWay) {
+  const Vector3 size(0.4, 0.4, 0.1);
+  const double mu = 0.3, acceleration = 0.33 * 9.81, seconds = 0.4;
+  const std::string soft = ", stiffness: 1.5e4, damping: 50.0";
+  ShakeOptions options = exact();
+  options.time_step.reset();
+  const auto profile = pulse({acceleration, 0.0, 0.0});
+  const ShakeRun rigid = shake(pallet(mu, size), in_the_middle(size), profile, options).runs.back();
+  const ShakeRun gives = shake(pallet(mu, size, soft), in_the_middle(size), profile, options).runs.back();
+  EXPECT_NEAR(static_cast<double>(rigid.steps), 200.0, 2.0);
+  EXPECT_NEAR(static_cast<double>(gives.steps), 100.0, 2.0);
+  EXPECT_NEAR(gives.boxes[0].shift, 0.5 * (acceleration - mu * 9.81) * seconds * seconds, 1e-3);
+  options.hold = LoadHold::Film;
+  const auto wound = shake(pallet(mu, size, soft), in_the_middle(size), profile, options).runs;
+  EXPECT_EQ(wound[1].steps, 1250) << "film is wound in steps of 2 ms";
 }
 
 TEST(Shake, GivesTheSameBytesAtAnyNumberOfThreads) {
