@@ -91,6 +91,7 @@ void check(const model::Scenario& scenario, const std::vector<model::PlacementEn
   };
   require(options.draws >= 0 && options.draws <= 1000, "draws", options.draws, "0 .. 1000");
   require(options.shift > 0.0 && options.shift <= 10.0, "shift", options.shift, "above 0, at most 10 m");
+  require(options.film_layers >= 1 && options.film_layers <= 40, "film layers", options.film_layers, "1 .. 40");
   require(options.tilt > 0.0 && options.tilt <= 3.2, "tilt", options.tilt, "above 0, at most 180 degrees");
   if (!options.time_step) return;
   require(*options.time_step > 0.0 && *options.time_step <= 0.02, "time step", *options.time_step,
@@ -181,6 +182,7 @@ ShakeResult shake(const model::Scenario& scenario, const std::vector<model::Plac
   for (int i = 0; i < options.draws; ++i) frictions.push_back(1.0 + rng.uniform(-half_width, half_width));
   std::ranges::sort(frictions);
   ShakeResult result;
+  result.film_layers = options.hold == LoadHold::Film ? options.film_layers : 0;
   result.inner_size = model::find_container(scenario, scenario.target)->inner_size;
   for (const model::PlacementEntry& one : load) {
     result.boxes.push_back(one.parcel);
@@ -204,6 +206,18 @@ ShakeResult shake(const model::Scenario& scenario, const std::vector<model::Plac
     if (result.runs[i].worst > result.runs[result.worst].worst) result.worst = i;
   }
   return result;
+}
+
+ShakeResult shake_with_least_film(const model::Scenario& scenario, const std::vector<model::PlacementEntry>& load,
+                                  const std::vector<ShakeMotion>& profile, ShakeOptions options, int most) {
+  ShakeResult nearest;
+  for (options.film_layers = 1; options.film_layers <= std::max(1, most); ++options.film_layers) {
+    ShakeResult result = shake(scenario, load, profile, options);
+    if (result.holds()) return result;
+    const bool is_nearer = nearest.runs.empty() || result.runs[result.worst].worst < nearest.runs[nearest.worst].worst;
+    if (is_nearer) nearest = std::move(result);
+  }
+  return nearest;
 }
 
 }  // namespace snug::runs

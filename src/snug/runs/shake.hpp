@@ -16,7 +16,7 @@ namespace snug::runs {
 /// What holds a load beside walls and friction, as simple models.
 enum class LoadHold {
   None,
-  Film,   ///< stretch film, wound around the load before it is driven: hoops under 350 N a metre of height, that shear
+  Film,   ///< stretch film, wound around the load before it is driven: hoops under tension that shear
   Straps  ///< over the top: the boxes that carry no other are pressed down by 600 N together
 };
 [[nodiscard]] const char* name_of(LoadHold hold);
@@ -32,6 +32,7 @@ enum class ShakeLimits {
 struct ShakeOptions {
   LoadHold hold = LoadHold::None;
   ShakeLimits limits = ShakeLimits::Boxes;
+  int film_layers = 4;                   ///< 1 to 40, each under 87.5 N per metre of height
   int draws = 4;                         ///< of friction, beside the scenario's own
   std::uint64_t seed = 1;                ///< of the draws
   bool all_frictions = false;            ///< every motion with each of them, also where one decides
@@ -71,6 +72,7 @@ struct ShakeResult {
   Vector3 inner_size = Vector3::Zero();
   double shift = 0.0;          ///< m, allowed at any time
   double remaining = 0.0;      ///< m, allowed in the end; infinite where only the shift counts
+  int film_layers = 0;         ///< 0: no film
   std::vector<ShakeRun> runs;  ///< motion by motion, from the least friction on
   std::size_t worst = 0;       ///< of runs
   double seconds = 0.0;        ///< of motion, in all runs
@@ -85,5 +87,12 @@ struct ShakeResult {
 /// boxes, a scenario without target and options out of range.
 [[nodiscard]] ShakeResult shake(const model::Scenario& scenario, const std::vector<model::PlacementEntry>& load,
                                 const std::vector<ShakeMotion>& profile, const ShakeOptions& options);
+
+/// With as little film as holds the load, tried layer by layer from one on; if none of 1 to `most` layers does, what
+/// came of the number of layers with which it came nearest. options.hold is film.
+[[nodiscard]] ShakeResult shake_with_least_film(const model::Scenario& scenario,
+                                                const std::vector<model::PlacementEntry>& load,
+                                                const std::vector<ShakeMotion>& profile, ShakeOptions options,
+                                                int most);
 
 }  // namespace snug::runs

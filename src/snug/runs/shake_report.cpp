@@ -112,8 +112,11 @@ std::string shake_verdict(const ShakeResult& result, const ShakeWords& words) {
 }
 
 std::string format_shake_text(const ShakeResult& result, const ShakeWords& words) {
-  std::string text = fmt::format("load {}, profile {}, hold {}, {} boxes\n\n", words.load, words.profile, words.hold,
-                                 result.boxes.size());
+  const std::string layers = result.film_layers > 0
+                                 ? fmt::format(" of {} layer{}", result.film_layers, result.film_layers == 1 ? "" : "s")
+                                 : std::string();
+  std::string text = fmt::format("load {}, profile {}, hold {}{}, {} boxes\n\n", words.load, words.profile, words.hold,
+                                 layers, result.boxes.size());
   text += fmt::format("{:<34} {:>8} {:>9} {:>9} {:>9}  {}\n", "motion", "friction", "shift, mm", "left, mm",
                       "tilt, deg", "worst box");
   for (const ShakeRun* run : worst_of_shaken_motions(result)) {
@@ -128,6 +131,7 @@ std::string format_shake_json(const ShakeResult& result, const ShakeWords& words
   Json json{{"holds", result.holds()},      {"verdict", shake_verdict(result, words)}, {"profile", words.profile},
             {"hold", words.hold},           {"max_shift_mm", 1e3 * result.shift},      {"max_tilt_deg", words.tilt_deg},
             {"simulated_s", result.seconds}};
+  if (result.film_layers > 0) json["film_layers"] = result.film_layers;
   for (const ShakeRun& run : result.runs) {
     Json one{{"motion", run.motion},
              {"friction", run.friction},

@@ -44,6 +44,13 @@ double middle_of(std::size_t band) { return (static_cast<double>(band) + 0.5) * 
 
 }  // namespace
 
+FilmParams film_of(int layers) {
+  constexpr double kLayers = 4.0;  // of FilmParams as it is
+  const FilmParams four;
+  return {layers * (four.tension / kLayers), layers * (four.stretch_stiffness / kLayers),
+          layers * (four.shear_stiffness / kLayers)};
+}
+
 double Film::length_of(const std::vector<Corner>& hull) {
   double length = 0.0;
   for (std::size_t i = 0; i < hull.size(); ++i) length += (hull[(i + 1) % hull.size()].p_TQ - hull[i].p_TQ).norm();

@@ -8,13 +8,15 @@
 
 namespace snug::runs::internal {
 
-/// All layers together, each per metre of height or of length (docs/decisions/0129). Four layers of 23 um, stretched to
-/// three times their length.
+/// All layers together, each per metre of height or of length (docs/decisions/0129). As it is: four layers of 23 um,
+/// stretched to three times their length.
 struct FilmParams {
   double tension = 350.0;          ///< N/m, around the load at rest
   double stretch_stiffness = 6e3;  ///< N/m, by which the tension grows for each part of its length that a hoop grows
   double shear_stiffness = 2.2e3;  ///< N/m: shear flow for a shear of one
 };
+/// Every layer adds as much as the one before.
+[[nodiscard]] FilmParams film_of(int layers);
 
 struct FilmBox {
   Vector3 size = Vector3::Zero();

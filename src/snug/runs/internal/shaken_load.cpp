@@ -90,7 +90,7 @@ ShakenLoad::ShakenLoad(const model::Scenario& scenario, const std::vector<model:
       X_WT_(model::find_container(scenario, scenario.target)->X_WT),
       inner_(model::find_container(scenario, scenario.target)->inner_size),
       state_(cell::make_initial_state(scenario, world_)),
-      film_(film_boxes(scenario, load)),
+      film_(film_boxes(scenario, load), film_of(options.film_layers)),
       rested_film_(film_),
       is_top_(tops_of(scenario, load)) {
   for (std::size_t i = 0; i < load.size(); ++i) {

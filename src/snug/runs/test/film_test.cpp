@@ -35,6 +35,16 @@ TEST(Film, PressesALoadTogetherByItsTensionAtTheCorners) {
   }
 }
 
+TEST(Film, PullsStretchesAndShearsAsManyTimesAsItHasLayers) {
+  const FilmParams four, one = film_of(1), six = film_of(6);
+  EXPECT_EQ(film_of(4).tension, four.tension);
+  EXPECT_EQ(film_of(4).stretch_stiffness, four.stretch_stiffness);
+  EXPECT_EQ(film_of(4).shear_stiffness, four.shear_stiffness);
+  EXPECT_NEAR(six.tension, 6.0 * one.tension, 1e-9);
+  EXPECT_NEAR(six.stretch_stiffness, 6.0 * one.stretch_stiffness, 1e-9);
+  EXPECT_NEAR(six.shear_stiffness, 6.0 * one.shear_stiffness, 1e-9);
+}
+
 TEST(Film, HasAPartOfItsTensionAndNoShearWhileItIsWound) {
   const Film film = pair();
   const auto poses = at(-0.15, 0.11);  // wherever the load stands

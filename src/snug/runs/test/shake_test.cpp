@@ -127,6 +127,23 @@ TEST(Shake, FilmDrawsALoadTogetherBeforeItIsDriven) {
   EXPECT_LT(result.runs[2].boxes[0].shift, 1e-3) << "from where the film has drawn it";
 }
 
+TEST(Shake, WindsAsFewLayersOfFilmAsHold) {
+  const Vector3 size(0.4, 0.4, 0.1);
+  ShakeOptions options = exact();
+  options.hold = LoadHold::Film;
+  options.time_step = 0.002;
+  options.shift = 0.0007;
+  const std::vector<ShakeMotion> push{{"push", {{0.0, Vector3::Zero()}, {0.002, {5.0, 0, 0}}, {1.0, {5.0, 0, 0}}}}};
+  // Without friction it sways to 2 m a / k; a layer has two sides of 0.4 m, 0.55 kN/m, over half a band: 8.8 kN/m.
+  // 2.27 mm with one layer, 0.57 mm with four, 0.76 mm with three.
+  const ShakeResult result = shake_with_least_film(pallet(0.0, size), in_the_middle(size), push, options, 6);
+  EXPECT_TRUE(result.holds());
+  EXPECT_EQ(result.film_layers, 4);
+  const ShakeResult nearest = shake_with_least_film(pallet(0.0, size), in_the_middle(size), push, options, 2);
+  EXPECT_FALSE(nearest.holds());
+  EXPECT_EQ(nearest.film_layers, 2) << "where none holds, the one that came nearest";
+}
+
 TEST(Shake, JudgesByTheHeightOfALoadAsEumos40509Does) {
   const Vector3 size(0.4, 0.4, 0.5);
   const model::Scenario scenario = pallet(0.3, size);
