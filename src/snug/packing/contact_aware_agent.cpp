@@ -95,6 +95,15 @@ bool are_of_a_grid(const Planning& planning, std::span<const Item> kinds) {
   return 20 * unit >= to_ticks(planning.inner_size.minCoeff());
 }
 
+/// Boxes of one size stand in rows, which leave few gaps, and need the places at the rim for as many rows as can be.
+Weights pallet_weights(Weights weights, std::span<const Item> kinds) {
+  weights = for_pallets(weights);
+  const bool has_one_size =
+      std::ranges::all_of(kinds, [&](const Item& kind) { return kind.size == kinds.front().size; });
+  if (has_one_size) weights[Loose] = 0.0;
+  return weights;
+}
+
 /// Those that go on in roll-outs: the one of which more gets in decides. The tuned one knows edges that add up; maximal
 /// contact knows nothing and is as good where boxes are unlike those that it was tuned on. Boxes of a grid have a
 /// policy that was tuned on such boxes.
@@ -102,7 +111,7 @@ std::vector<Policy> policies_for(const Planning& planning, std::span<const Item>
   std::vector<Policy> policies(2, make_policy(planning, kinds));
   const bool is_grid = planning.has_walls && are_of_a_grid(planning, kinds);
   policies.back().weights = is_grid ? grid_weights() : contact_weights();
-  if (!planning.has_walls) policies.back().weights = for_pallets(policies.back().weights);
+  if (!planning.has_walls) policies.back().weights = pallet_weights(policies.back().weights, kinds);
   return policies;
 }
 
@@ -382,7 +391,7 @@ Policy make_policy(const Planning& planning, std::span<const Item> kinds) {
     }
   }
   const int longest = to_ticks(planning.inner_size.head<2>().maxCoeff());
-  const Weights weights = planning.has_walls ? default_weights() : for_pallets(default_weights());
+  const Weights weights = planning.has_walls ? default_weights() : pallet_weights(default_weights(), kinds);
   return {weights, WasteTable(along, longest), WasteTable(up, to_ticks(planning.inner_size.z()))};
 }
 

@@ -64,6 +64,45 @@ double see_tipping(const Layout& layout, const Block& me) {
   return sum;
 }
 
+/// What is beside a block on the level of its middle, and over 30 % of its side at least.
+struct Backing {
+  std::array<bool, 4> is_outermost{true, true, true, true};  ///< nothing on this side, as far as the rim
+  std::array<int, 4> gap{};                                  ///< ticks, to the nearest on this side
+};
+
+Backing find_backing(const Layout& layout, const Block& me) {
+  constexpr double kLeastShared = 0.3;
+  Backing backing;
+  const int middle = (me.z1 + me.z2) / 2;
+  const double least_x = kLeastShared * (me.x2 - me.x1), least_y = kLeastShared * (me.y2 - me.y1);
+  const auto note = [&backing](std::size_t side, int gap) {
+    backing.gap[side] = backing.is_outermost[side] ? gap : std::min(backing.gap[side], gap);
+    backing.is_outermost[side] = false;
+  };
+  for (const Block& b : layout.blocks()) {
+    if (b.z2 < middle || b.z1 >= me.z2) continue;
+    const int ox = std::min(me.x2, b.x2) - std::max(me.x1, b.x1);
+    const int oy = std::min(me.y2, b.y2) - std::max(me.y1, b.y1);
+    if (oy > least_y && ox <= 0) note(b.x1 < me.x1 ? 0 : 1, -ox);
+    if (ox > least_x && oy <= 0) note(b.y1 < me.y1 ? 2 : 3, -oy);
+  }
+  return backing;
+}
+
+/// Film presses what is outermost toward the middle of the load: how far it can go before something backs it, added up
+/// over the four directions, each as a part of kFarthest.
+double see_loose(const Layout& layout, const Block& me) {
+  constexpr double kBacked = 50, kFarthest = 2000;  // ticks
+  const Backing backing = find_backing(layout, me);
+  double sum = 0.0;
+  for (const std::size_t side : {0U, 1U, 2U, 3U}) {
+    const std::size_t inner = side ^ 1U;
+    if (!backing.is_outermost[side] || backing.is_outermost[inner]) continue;
+    sum += std::clamp((backing.gap[inner] - kBacked) / kFarthest, 0.0, 1.0);
+  }
+  return sum;
+}
+
 }  // namespace
 
 Weights default_weights() {
@@ -104,6 +143,7 @@ Weights for_pallets(Weights weights) {
   // A tenth of the height counts as much as a face that touches all round; a few millimetres of unevenness do not.
   weights[Base] += 10.0;
   weights[Tipping] += 3.0;
+  weights[Loose] += 4.0;
   return weights;
 }
 
@@ -154,7 +194,10 @@ Features see(const Layout& layout, const Policy& policy, const Piece& piece, con
   f[Footprint] = 10.0 * area / (static_cast<double>(rules.size_x) * rules.size_y);
   f[Touch] = (contact + pose.support * area) / (2.0 * (area + (width + depth) * height));
   for (const int gap : s.gap) f[Sliver] += gap > kTouch && gap < rules.min_side ? 1.0 : 0.0;
-  if (!rules.has_walls) f[Tipping] = see_tipping(layout, me);
+  if (!rules.has_walls) {
+    f[Tipping] = see_tipping(layout, me);
+    f[Loose] = see_loose(layout, me);
+  }
   return f;
 }
 

@@ -22,6 +22,7 @@ enum Feature {
   Sliver,
   Touch,
   Tipping,  ///< of a pallet: how easily it tips, or what it stands on with it
+  Loose,    ///< of a pallet: how far film that presses it inward can push it before a neighbour backs it
   kFeatureCount
 };
 using Features = std::array<double, kFeatureCount>;
@@ -35,7 +36,7 @@ using Weights = std::array<double, kFeatureCount>;
 /// Maximal contact: as much of the whole surface as can be touches boxes, floor and walls; of equals the lowest.
 [[nodiscard]] Weights contact_weights();
 /// The same for a container without walls, where nothing holds a column that stands by itself: of two places the lower
-/// one, and what tips easily costs.
+/// one, and what tips easily or is not backed against film costs.
 [[nodiscard]] Weights for_pallets(Weights weights);
 
 /// What is left of a length when it is filled as well as sums of these lengths can: one entry a millimetre.

@@ -331,5 +331,22 @@ TEST(LayoutTipping, CostsWhereAColumnStandsByItselfAndHalfWhereANeighbourHoldsIt
   EXPECT_NEAR(see(layout, policy, piece, on_top)[Tipping], 1.5 * each, 1e-12);
 }
 
+TEST(LayoutBacking, CostsAsFarAsFilmCanPushABoxInwardBeforeANeighbourBacksIt) {
+  Layout layout = make_pallet();
+  layout.add(box_at(0, 0, 0, 400, 300, 300, 5));
+  Piece piece;
+  piece.mass = 5000;
+  piece.orientations.push_back({4000, 3000, 3000, 0, 0, 0});
+  const Policy policy{for_pallets(default_weights()), WasteTable({4000}, 12000), WasteTable({3000}, 18000)};
+  const auto loose_at = [&](int x) { return see(layout, policy, piece, {10 * x, 0, 0, 0, 1.0})[Loose]; };
+  EXPECT_EQ(loose_at(400), 0.0);
+  EXPECT_EQ(loose_at(405), 0.0) << "5 mm are no matter";
+  EXPECT_NEAR(loose_at(505), 100.0 / 200.0, 1e-12);
+  EXPECT_EQ(loose_at(800), 1.0) << "200 mm and more are as bad as can be";
+  EXPECT_EQ(see(layout, policy, piece, {8000, 4000, 0, 0, 1.0})[Loose], 0.0) << "nothing stands beside it yet";
+  layout.add(box_at(800, 0, 0, 400, 300, 100, 5));
+  EXPECT_NEAR(loose_at(400), 0.0, 1e-12) << "the new one ends below the middle, and the first one backs it";
+}
+
 }  // namespace
 }  // namespace snug::packing::internal
