@@ -24,18 +24,30 @@ constexpr double kSolvedPenalty = 3e4;
 constexpr double kSolvedGrowth = 30.0;
 
 constexpr int kLeastClustered = 30;        ///< rows, of islands that are looked at in parts
-constexpr int kClusterRounds = 20;         ///< parts solved, each time with one more ring of bodies around them
 constexpr double kClusterResidual = 0.5;   ///< of the tolerance, to which parts are solved
 constexpr int kCyclesWithoutClusters = 1;  ///< generalized steps where more than half is unsolved
 
 // Large groups: least time on 37 problems of settling piles of 300 and 1000 boxes.
-constexpr int kLargeGroup = 400;       ///< rows
-constexpr int kFirstSweeps = 120;      ///< with momentum, in place of generalized steps
-constexpr double kFewUnsolved = 0.01;  ///< of its rows: then these sweeps end, since clusters are quicker
-constexpr int kSweepsAround = 12;      ///< after clusters
-/// Of the rows: where clusters would have more, that many sweeps come again, kAgain times; then up to half are solved.
-constexpr double kMostClustered = 0.1;
-constexpr int kAgain = 2;
+constexpr int kLargeGroup = 400;   ///< rows
+constexpr int kFirstSweeps = 120;  ///< with momentum, in place of generalized steps
+/// Sweeps for each row of the group, where these are more: large heaps are deep, and Newton's method on what too few
+/// sweeps leave takes long (docs/decisions/0146).
+constexpr double kSweepsPerRow = 0.03;
+constexpr double kFewUnsolved = 0.01;   ///< of its rows: then these sweeps end, since clusters are quicker
+constexpr int kSweepsAround = 12;       ///< after clusters
+constexpr double kMostClustered = 0.5;  ///< of the rows, in any case
+
+/// How clusters of a group are looked for. Where they would be too large, sweeps come again.
+struct ClusterSearch {
+  int rounds;          ///< parts solved, each time with one more ring of bodies around them
+  int again;           ///< times that sweeps come where clusters would be larger than `most`
+  double most;         ///< of the rows of the group
+  bool has_few_rings;  ///< only as many as keep each cluster within kLargeGroup rows
+};
+constexpr ClusterSearch kSearch{20, 0, kMostClustered, false}, kSearchLarge{20, 2, 0.1, false};
+/// Chosen on heaps of 3000 boxes.
+constexpr ClusterSearch kSearchVast{60, 10, 0.03, true};
+constexpr int kVastGroup = 6000;  ///< rows
 constexpr double kMostMomentum = 0.97;
 /// Of the tolerance: large groups at rest are solved as far as sweeps in single precision go.
 constexpr double kSingleResidual = 0.1;
@@ -126,9 +138,13 @@ class GroupProblem {
   [[nodiscard]] double within_reach() const { return std::max(wanted_, kSingleResidual * tolerance_); }
   /// Whether factors of the whole cost more than many sweeps.
   [[nodiscard]] bool is_large() const { return work_.clusters != nullptr && end_ - first_ >= kLargeGroup; }
+  [[nodiscard]] int first_sweeps() const {
+    return std::max(kFirstSweeps, static_cast<int>(kSweepsPerRow * static_cast<double>(row_count())));
+  }
   /// Whether it is swept in halves, by any number of threads.
   [[nodiscard]] bool is_cut() const { return end_ - first_ >= kSharedGroup; }
   [[nodiscard]] WorkerPool* pool() const { return pool_of(threads_); }
+  [[nodiscard]] bool find_clusters(const ClusterSearch& search, double most, int& rings);
   void solve_clusters();
   void solve_each(const Residuals& residuals, ClusterScratch& clusters);
   void linearise();
@@ -482,17 +498,29 @@ void GroupProblem::solve_each(const Residuals& residuals, ClusterScratch& cluste
   for (int i = 0; i < count; ++i) solve(i, 0);
 }
 
+/// With fewer rings than asked for where the search wants that.
+bool GroupProblem::find_clusters(const ClusterSearch& search, double most, int& rings) {
+  const auto find = [&](const RowClusters::Limits& limits) {
+    return work_.clusters->rows.find(first_, work_.rows.get(), work_.system.patches(), tolerance_, rings, limits,
+                                     pool());
+  };
+  for (; search.has_few_rings && rings > 0; --rings) {
+    if (find({most, kLargeGroup})) return true;
+  }
+  return find({most});
+}
+
 /// A few contacts keep changing their status while all others are solved: these are solved among themselves, then a
 /// generalized step, or in large groups a few sweeps, carry what that changes to the rest.
 void GroupProblem::solve_clusters() {
   ClusterScratch& clusters = *work_.clusters;
   const Residuals residuals{kClusterResidual * tolerance_, kClusterResidual * tolerance_};
+  const ClusterSearch& search = !is_large() ? kSearch : row_count() < kVastGroup ? kSearchLarge : kSearchVast;
   int rings = is_large() ? 1 : 0, again = 0;
-  for (int round = 0; round < kClusterRounds && !is_solved() && has_room_; ++round) {
-    const double most = is_large() && again < kAgain ? kMostClustered : 0.5;
-    if (!clusters.rows.find(first_, work_.rows.get(), work_.system.patches(), tolerance_, rings, most, pool())) {
+  for (int round = 0; round < search.rounds && !is_solved() && has_room_; ++round) {
+    if (!find_clusters(search, again < search.again ? search.most : kMostClustered, rings)) {
       ++again;
-      is_large() ? run_sweeps(kFirstSweeps, kFewUnsolved) : run_cycles(kCyclesWithoutClusters);
+      is_large() ? run_sweeps(first_sweeps(), kFewUnsolved) : run_cycles(kCyclesWithoutClusters);
       rings = std::max(0, rings - 1);
       continue;
     }
@@ -523,7 +551,7 @@ void GroupProblem::solve_from_here(bool is_nearly_solved) {
   if ((is_nearly_solved && has_parts) || (is_swept && best_ <= within_reach())) {
     measure();
   } else if (is_swept) {
-    run_sweeps(kFirstSweeps, kFewUnsolved);
+    run_sweeps(first_sweeps(), kFewUnsolved);
   } else {
     run_cycles(kCycles);
   }

@@ -83,16 +83,20 @@ std::size_t RowClusters::join() {
   return count;
 }
 
-void RowClusters::copy_rows(const Row* rows, WorkerPool* pool) {
-  const auto cluster_of = [&](const RowPatch& patch) -> int& {
-    return cluster_[at(root_of(std::max(patch.ia, patch.ib)))];
-  };
+int& RowClusters::cluster_of(const RowPatch& patch) { return cluster_[at(root_of(std::max(patch.ia, patch.ib)))]; }
+
+/// Of each cluster, in ends_.
+void RowClusters::count_rows() {
   ends_.clear();
-  for (const RowPatch* patch : bearing_) {  // counts first
+  for (const RowPatch* patch : bearing_) {
     int& cluster = cluster_of(*patch);
     if (cluster < 0) cluster = static_cast<int>(ends_.size()), ends_.push_back(0);
     ends_[at(cluster)] += at(patch->count);
   }
+}
+
+/// Turns the counts in ends_ into ends.
+void RowClusters::copy_rows(const Row* rows, WorkerPool* pool) {
   std::size_t begin = 0;
   for (std::size_t& end : ends_) begin += std::exchange(end, begin);
   for (const RowPatch* patch : bearing_) {
@@ -106,11 +110,13 @@ void RowClusters::copy_rows(const Row* rows, WorkerPool* pool) {
 }
 
 bool RowClusters::find(const Row* rows, const NewtonRow* newton, std::span<const RowPatch> patches, double residual,
-                       int rings, double most, WorkerPool* pool) {
+                       int rings, const Limits& most, WorkerPool* pool) {
   mark_unsolved(rows, newton, patches, residual);
   for (int ring = 1; ring <= rings; ++ring) add_ring(ring);
   const RowPatch& last = patches.back();
-  if (static_cast<double>(join()) > most * (last.first + last.count)) return false;
+  if (static_cast<double>(join()) > most.all * (last.first + last.count)) return false;
+  count_rows();
+  if (std::any_of(ends_.begin(), ends_.end(), [&](std::size_t count) { return count > most.each; })) return false;
   copy_rows(rows, pool);
   return true;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -18,12 +19,18 @@ struct NewtonRow;
 /// impulses of all other rows as they are. Never allocates after construction.
 class RowClusters {
  public:
+  /// How many rows they may have.
+  struct Limits {
+    double all;  ///< of those of the island
+    std::size_t each = std::numeric_limits<std::size_t>::max();
+  };
+
   RowClusters(std::size_t bodies, std::size_t rows);
 
   /// Takes the bodies of all rows above `residual` and, `rings` times, what touches these; then the rows between them.
-  /// False when these are more than the fraction `most` of the island: then it has no parts.
+  /// False when these are more than `most`: then it has no parts.
   [[nodiscard]] bool find(const Row* rows, const NewtonRow* newton, std::span<const RowPatch> patches, double residual,
-                          int rings, double most, WorkerPool* pool);
+                          int rings, const Limits& most, WorkerPool* pool);
   /// Copies of the rows of each, in the order of the island.
   [[nodiscard]] std::size_t count() const { return ends_.size(); }
   [[nodiscard]] std::span<Row> operator[](std::size_t cluster);
@@ -35,6 +42,8 @@ class RowClusters {
   void mark_unsolved(const Row* rows, const NewtonRow* newton, std::span<const RowPatch> patches, double residual);
   void add_ring(int ring);
   [[nodiscard]] std::size_t join();
+  [[nodiscard]] int& cluster_of(const RowPatch& patch);
+  void count_rows();
   void copy_rows(const Row* rows, WorkerPool* pool);
 
   std::vector<const RowPatch*> bearing_;  ///< open ones join nothing and are left out
