@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "snug/core/rng.hpp"
+#include "snug/packing/internal/agents.hpp"
 #include "snug/packing/internal/policy.hpp"
 #include "snug/packing/test/scene.hpp"
 
@@ -346,6 +347,19 @@ TEST(LayoutBacking, CostsAsFarAsFilmCanPushABoxInwardBeforeANeighbourBacksIt) {
   EXPECT_EQ(see(layout, policy, piece, {8000, 4000, 0, 0, 1.0})[Loose], 0.0) << "nothing stands beside it yet";
   layout.add(box_at(800, 0, 0, 400, 300, 100, 5));
   EXPECT_NEAR(loose_at(400), 0.0, 1e-12) << "the new one ends below the middle, and the first one backs it";
+}
+
+TEST(LayoutBacking, CountsOnPalletsForBoxesOfMoreThanOneSize) {
+  Planning planning;
+  planning.inner_size = {1.2, 1.0, 1.8};
+  std::vector<Item> kinds(2);
+  kinds[0].size = kinds[1].size = {0.4, 0.3, 0.2};
+  planning.has_walls = false;
+  EXPECT_EQ(make_policy(planning, kinds).weights[Loose], 0.0) << "they stand in rows";
+  kinds[1].size.x() = 0.35;
+  EXPECT_GT(make_policy(planning, kinds).weights[Loose], 0.0);
+  planning.has_walls = true;
+  EXPECT_EQ(make_policy(planning, kinds).weights[Loose], 0.0) << "no film";
 }
 
 }  // namespace
