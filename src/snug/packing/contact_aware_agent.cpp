@@ -97,9 +97,10 @@ bool are_of_a_grid(const Planning& planning, std::span<const Item> kinds) {
 
 /// Boxes of one size stand in rows, which leave few gaps, and need the places at the rim for as many rows as can be.
 Weights pallet_weights(Weights weights, std::span<const Item> kinds) {
+  constexpr double kAlike = 0.01;  // m: one of them has been measured
   weights = for_pallets(weights);
-  const bool has_one_size =
-      std::ranges::all_of(kinds, [&](const Item& kind) { return kind.size == kinds.front().size; });
+  const bool has_one_size = std::ranges::all_of(
+      kinds, [&](const Item& kind) { return (kind.size - kinds.front().size).lpNorm<Eigen::Infinity>() < kAlike; });
   if (has_one_size) weights[Loose] = 0.0;
   return weights;
 }
