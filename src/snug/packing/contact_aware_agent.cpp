@@ -2,6 +2,7 @@
 // futures.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <span>
 #include <string_view>
@@ -86,22 +87,36 @@ double largest_volume(const Prospect& prospect) {
   return largest;
 }
 
+/// A twentieth of the container's shortest side: of which the sides of boxes of a grid are multiples.
+int least_unit(const Planning& planning) { return (to_ticks(planning.inner_size.minCoeff()) + 19) / 20; }
+
 /// All sides are multiples of one length, and it is a twentieth of the container's shortest side or more.
 bool are_of_a_grid(const Planning& planning, std::span<const Item> kinds) {
   int unit = 0;
   for (const Item& kind : kinds) {
     for (int axis = 0; axis < 3; ++axis) unit = std::gcd(unit, to_ticks(kind.size[axis]));
   }
-  return 20 * unit >= to_ticks(planning.inner_size.minCoeff());
+  return unit >= least_unit(planning);
 }
 
-/// Boxes of one size stand in rows, which leave few gaps, and need the places at the rim for as many rows as can be.
-Weights pallet_weights(Weights weights, std::span<const Item> kinds) {
-  constexpr double kAlike = 0.01;  // m: one of them has been measured
+/// Boxes of one size and modular cartons, whose lengths and widths are of a grid: their rows leave few gaps, and need
+/// the places at the rim for as many rows as can be. To a centimetre, since one of the boxes has been measured.
+bool stand_in_rows(const Planning& planning, std::span<const Item> kinds) {
+  constexpr double kCentimetre = 0.01;
+  int unit = 0;
+  bool has_one_size = true;
+  for (const Item& kind : kinds) {
+    has_one_size &= (kind.size - kinds.front().size).lpNorm<Eigen::Infinity>() < kCentimetre;
+    for (int axis = 0; axis < 2; ++axis) {
+      unit = std::gcd(unit, to_ticks(kCentimetre * std::round(kind.size[axis] / kCentimetre)));
+    }
+  }
+  return has_one_size || unit >= least_unit(planning);
+}
+
+Weights pallet_weights(Weights weights, const Planning& planning, std::span<const Item> kinds) {
   weights = for_pallets(weights);
-  const bool has_one_size = std::ranges::all_of(
-      kinds, [&](const Item& kind) { return (kind.size - kinds.front().size).lpNorm<Eigen::Infinity>() < kAlike; });
-  if (has_one_size) weights[Loose] = 0.0;
+  if (stand_in_rows(planning, kinds)) weights[Loose] = 0.0;
   return weights;
 }
 
@@ -112,7 +127,7 @@ std::vector<Policy> policies_for(const Planning& planning, std::span<const Item>
   std::vector<Policy> policies(2, make_policy(planning, kinds));
   const bool is_grid = planning.has_walls && are_of_a_grid(planning, kinds);
   policies.back().weights = is_grid ? grid_weights() : contact_weights();
-  if (!planning.has_walls) policies.back().weights = pallet_weights(policies.back().weights, kinds);
+  if (!planning.has_walls) policies.back().weights = pallet_weights(policies.back().weights, planning, kinds);
   return policies;
 }
 
@@ -392,7 +407,7 @@ Policy make_policy(const Planning& planning, std::span<const Item> kinds) {
     }
   }
   const int longest = to_ticks(planning.inner_size.head<2>().maxCoeff());
-  const Weights weights = planning.has_walls ? default_weights() : pallet_weights(default_weights(), kinds);
+  const Weights weights = planning.has_walls ? default_weights() : pallet_weights(default_weights(), planning, kinds);
   return {weights, WasteTable(along, longest), WasteTable(up, to_ticks(planning.inner_size.z()))};
 }
 

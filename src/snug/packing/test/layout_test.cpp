@@ -349,16 +349,21 @@ TEST(LayoutBacking, CostsAsFarAsFilmCanPushABoxInwardBeforeANeighbourBacksIt) {
   EXPECT_NEAR(loose_at(400), 0.0, 1e-12) << "the new one ends below the middle, and the first one backs it";
 }
 
-TEST(LayoutBacking, CountsOnPalletsForBoxesOfMoreThanOneSize) {
+TEST(LayoutBacking, CountsOnPalletsForCartonsThatAreNotModular) {
   Planning planning;
   planning.inner_size = {1.2, 1.0, 1.8};
-  std::vector<Item> kinds(2);
-  kinds[0].size = kinds[1].size = {0.4, 0.3, 0.2};
-  kinds[1].size.y() += 0.004;  // as measured
   planning.has_walls = false;
-  EXPECT_EQ(make_policy(planning, kinds).weights[Loose], 0.0) << "they stand in rows";
+  std::vector<Item> kinds(2);
+  kinds[0].size = {0.6, 0.4, 0.31};
+  kinds[1].size = {0.398, 0.304, 0.2};  // as measured
+  EXPECT_EQ(make_policy(planning, kinds).weights[Loose], 0.0) << "rows of 400 x 300 and 600 x 400 mm have no gaps";
   kinds[1].size.x() = 0.35;
+  EXPECT_EQ(make_policy(planning, kinds).weights[Loose], 0.0) << "nor those of multiples of 50 mm";
+  kinds[1].size.x() = 0.36;
   EXPECT_GT(make_policy(planning, kinds).weights[Loose], 0.0);
+  kinds[0].size = {0.364, 0.3, 0.2};
+  EXPECT_EQ(make_policy(planning, kinds).weights[Loose], 0.0) << "one size";
+  kinds[0].size.x() = 0.38;
   planning.has_walls = true;
   EXPECT_EQ(make_policy(planning, kinds).weights[Loose], 0.0) << "no film";
 }
