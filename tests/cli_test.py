@@ -1149,6 +1149,16 @@ class OtherCells(unittest.TestCase):
         self.assertEqual(len(plans[2]), len(plans[0]))
         self.assert_refused(snug(*words, "--future", "som"), "--future", "order", "catalogue", "none")
 
+    def test_layers_of_film_are_a_number_or_the_least_that_hold(self):
+        words = ("shake", ROOT / "scenarios" / "demo-placements.yaml", "--scenario", CELL, "--profile", "eumos40509",
+                 "--level", "0.3", "--film-layers")
+        self.assert_refused(snug(*words, 6), "--film-layers", "without --hold film")
+        for layers in ("x", "0", "2.5", "41"):
+            self.assert_refused(snug(*words, layers, "--hold", "film"), "--film-layers", "1 to 40, or least")
+        shaken = json.loads(snug(*words, "least", "--hold", "film", "--json").stdout)
+        self.assertTrue(shaken["holds"])
+        self.assertEqual(shaken["film_layers"], 1, "walls hold this load")
+
     def test_without_samples_nothing_is_said_of_samples(self):
         item = self.pack("--sequence", "two")["items"][0]
         self.assertEqual((item["samples"], item["samples_succeeded"], item["predicted"]), (0, None, None))

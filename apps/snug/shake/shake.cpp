@@ -26,7 +26,7 @@ struct ShakeOptions {
   double level = 0.5;  ///< g
   std::string hold = "none";
   std::string limits = "boxes";
-  std::string film_layers = "4";  ///< or "least"
+  std::optional<std::string> film_layers;  ///< a number, or "least"
   int draws = 4;
   std::uint64_t seed = 1;
   bool all_frictions = false;
@@ -83,7 +83,11 @@ runs::ShakeOptions run_options(const ShakeOptions& options) {
     if (options.hold == runs::name_of(hold)) run.hold = hold;
   }
   if (options.limits == runs::name_of(runs::ShakeLimits::Eumos40509)) run.limits = runs::ShakeLimits::Eumos40509;
-  if (options.film_layers != kLeast) run.film_layers = std::stoi(options.film_layers);
+  if (options.film_layers && run.hold != runs::LoadHold::Film) {
+    throw InputError("command line", "--film-layers", "'" + *options.film_layers + "' without --hold film",
+                     "film to wind");
+  }
+  if (options.film_layers && options.film_layers != kLeast) run.film_layers = std::stoi(*options.film_layers);
   run.draws = options.draws;
   run.seed = options.seed;
   run.all_frictions = options.all_frictions;
@@ -101,11 +105,10 @@ int run_shake(const ShakeOptions& options) {
   add_file(inputs, "the load", options.load);
   std::optional<OutputFile> page = reserve(inputs, options.page);
   const std::vector<runs::ShakeMotion> profile = profile_of(options, load.scenario);
-  const bool wants_least = options.film_layers == kLeast && options.hold == runs::name_of(runs::LoadHold::Film);
   const runs::ShakeOptions run = run_options(options);
   const runs::ShakeResult result =
-      wants_least ? runs::shake_with_least_film(load.scenario, load.boxes, profile, run, kMostLayers)
-                  : runs::shake(load.scenario, load.boxes, profile, run);
+      options.film_layers == kLeast ? runs::shake_with_least_film(load.scenario, load.boxes, profile, run, kMostLayers)
+                                    : runs::shake(load.scenario, load.boxes, profile, run);
   const runs::ShakeWords words{options.load, options.profile, options.hold, options.tilt};
   if (page) write_file(std::move(*page), runs::format_shake_page(result, words));
   print(options.json ? runs::format_shake_json(result, words) : runs::format_shake_text(result, words));
@@ -149,7 +152,8 @@ void add_shake(CLI::App& app, Action& action) {
   verb.option("--level", options.level, "G", "level of eumos40509 and tilt, in g", within(0.01, 2.0));
   verb.option("--hold", options.hold, "WHAT", "what holds the load besides walls and friction",
               one_of({"none", "film", "straps"}));
-  verb.option("--film-layers", options.film_layers, "N|least", "layers of film, or as few as hold", layers());
+  verb.option("--film-layers", options.film_layers, "N|least", "layers of film, or as few as hold (default: 4)",
+              layers());
   verb.option("--limits", options.limits, "WHICH", "when the load holds, see below", one_of({"boxes", "eumos40509"}));
   verb.option("--draws", options.draws, "N", "draws of friction from the scenario's uncertainty, besides its own",
               whole(0, 1000));
