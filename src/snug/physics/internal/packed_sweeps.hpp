@@ -1,4 +1,4 @@
-// PackedSweeps: sweeps over the rows of a large group, those of eight pairs of bodies side by side.
+// PackedSweeps: sweeps over the rows of a large group, those of sixteen pairs of bodies side by side.
 #pragma once
 
 #include <array>
@@ -12,43 +12,25 @@
 #include "snug/core/worker_pool.hpp"
 #include "snug/physics/internal/contact_row.hpp"
 #include "snug/physics/internal/group_halves.hpp"
+#include "snug/physics/internal/lane_sweep.hpp"
 
 namespace snug::physics::internal {
 
 struct RowPatch;
 
-/// The rows of a group in single precision, in blocks of eight patches that share no body: those of two halves whose
+/// The rows of a group in single precision, in blocks of sixteen patches that share no body: those of two halves whose
 /// bodies do not meet, which two threads sweep side by side, then the seam between them. Velocities are changes since
 /// the sweeps began, so rounding is small beside what is sought; what comes out is to be measured in double precision.
 /// Blocks, their order and the bytes that come out do not depend on the processor, nor on the number of threads. Never
 /// allocates after construction.
 class PackedSweeps {
  public:
-  static constexpr int kLanes = 8;
-  using Lanes = float[kLanes];
-
-  /// One row of each of eight patches.
-  struct alignas(32) Points {
-    Lanes j[3][12];     ///< of body A, then of B
-    Lanes V[6];         ///< inverse of the Delassus block
-    Lanes W[3];         ///< nn, n1, n2
-    Lanes W_inverse;    ///< 1 / nn
-    Lanes mobility[2];  ///< 11, 22
-    Lanes step_t, mu, gamma;
-    Lanes start[3];              ///< relative velocity without the changes; of the normal beyond its target
-    Lanes lambda[3], before[3];  ///< impulse, and that before the last sweep
-  };
-  struct Block {
-    std::int32_t a[kLanes] = {}, b[kLanes] = {};  ///< places of the bodies, or of one that does not move
-    std::int32_t first = 0, count = 0;            ///< in points_
-    std::int32_t lanes = 0;                       ///< in use
-  };
   struct Effort {
     int sweeps = 0;           ///< at most
     double momentum = 0.0;    ///< at most
     double wanted = 0.0;      ///< m/s, residual
     double few = 0.0;         ///< fraction of the rows that may miss `wanted` when sweeps end
-    int most_lanes = kLanes;  ///< at a time, where the processor has as many
+    int most_width = kLanes;  ///< lanes of the vectors, where the processor has as many
   };
 
   PackedSweeps(std::size_t bodies, std::size_t rows);
@@ -62,9 +44,24 @@ class PackedSweeps {
   int run(Row* rows, const double* u, const Effort& effort, WorkerPool* pool = nullptr);
 
  private:
+  static constexpr int kHalf = kLanes / 2;
+  static constexpr int kNumbers = 8;
+  using Numbers = std::array<float, kNumbers>;
+
   /// Rows of a patch in one lane of one block.
   struct Chunk {
     std::int32_t row = 0, count = 0, block = 0, lane = 0;
+    bool has_own_axes = false;  ///< its rows have axes of their own
+  };
+  /// Patches that share no body, before two such are joined to a block.
+  struct HalfBlock {
+    std::int32_t a[kHalf] = {}, b[kHalf] = {};  ///< places of the bodies
+    std::int32_t count = 0, lanes = 0;
+    std::int32_t joined = -1;  ///< twice its block, and 1 in the second half of this
+    bool has_own_axes = false;
+
+    [[nodiscard]] bool has(std::int32_t body) const;
+    [[nodiscard]] bool is_like(std::int32_t rows, bool own_axes) const;
   };
   /// What is swept on one thread: its blocks, and the places of its bodies.
   struct Part {
@@ -72,23 +69,29 @@ class PackedSweeps {
     std::size_t first_place = 0, end_place = 0;
   };
   void place_bodies(std::span<const int> bodies, bool is_cut);
-  void add_part(GroupHalves::Part part, std::span<const RowPatch> patches, bool is_cut);
+  void add_part(GroupHalves::Part part, const Row* rows, std::span<const RowPatch> patches, bool is_cut);
   void add_chunk(Chunk chunk, int a, int b);
+  void join_half_blocks();
   void fill(const Row* rows, WorkerPool* pool);
+  void fill_linear(const Row* first, const Chunk& chunk, LaneBlock& block);
   void begin(const Row* rows, const double* u, WorkerPool* pool);
   void take_momentum(const Part& part, float momentum);
+  template <class Visit>
+  void each_chunk(WorkerPool* pool, const Visit& visit);
   template <class Visit>
   void each_row(WorkerPool* pool, const Visit& visit);
 
   GroupHalves halves_;
-  std::array<Part, 3> parts_;                                ///< two halves, of which the second may be empty; the seam
-  std::vector<std::int32_t> place_;                          ///< of each active body, from 1 on
-  BoundedVector<std::array<float, kLanes>> velocities_;      ///< of each place; the last two numbers are none
-  BoundedVector<std::array<float, kLanes>> old_velocities_;  ///< before the last sweep
-  BoundedVector<Block> blocks_;
-  BoundedVector<Points> points_;
+  std::array<Part, 3> parts_;              ///< two halves, of which the second may be empty; the seam
+  std::vector<std::int32_t> place_;        ///< of each active body, from 1 on
+  BoundedVector<Numbers> velocities_;      ///< of each place; the last two numbers are none
+  BoundedVector<Numbers> old_velocities_;  ///< before the last sweep
+  BoundedVector<HalfBlock> half_blocks_;   ///< of a part
+  BoundedVector<LaneBlock> blocks_;
+  BoundedVector<LanePoints> points_;
+  BoundedVector<LaneLinear> linear_;
   BoundedVector<Chunk> chunks_;
-  BoundedVector<std::int32_t> open_;  ///< blocks with room for more
+  BoundedVector<std::int32_t> open_;  ///< half blocks with room for more
   int row_count_ = 0;
 };
 

@@ -14,8 +14,10 @@ namespace {
 
 constexpr int kBodies = 60;
 
-/// Contacts between drawn pairs of bodies, 1 to 6 a pair, some of them with what does not move.
+/// Contacts between drawn pairs of bodies, 1 to 6 a pair, some of them with what does not move. Linear velocities enter
+/// all contacts of a pair along the same axes, or each of them its own way.
 struct Problem {
+  bool has_own_axes = false;
   std::vector<Row> rows;
   std::vector<RowPatch> patches;
   std::vector<int> bodies = std::vector<int>(kBodies);
@@ -31,8 +33,10 @@ struct Problem {
       row.mu = 0.2;
       row.kind = RowKind::Contact;
       for (int axis = 0; axis < 3; ++axis) {
-        row.j[axis][axis] = -1.0, row.j[axis][6 + axis] = 1.0;
+        row.j[axis][axis] = -1.5, row.j[axis][6 + axis] = 1.0;
         for (const int turning : {3, 4, 5, 9, 10, 11}) row.j[axis][turning] = rng.uniform(-1.0, 1.0);
+        if (!has_own_axes) continue;
+        for (const int linear : {0, 1, 2, 6, 7, 8}) row.j[axis][linear] += rng.uniform(-0.3, 0.3);
       }
       finish_row(row);
       rows.push_back(row);
@@ -52,8 +56,9 @@ struct Problem {
   }
 };
 
-Problem drawn_problem() {
+Problem drawn_problem(bool has_own_axes = false) {
   Problem problem;
+  problem.has_own_axes = has_own_axes;
   Rng rng = Rng(4).split("packed sweeps");
   std::iota(problem.bodies.begin(), problem.bodies.end(), 0);
   for (double& u : problem.u_free) u = rng.uniform(-1.0, 1.0);
@@ -64,8 +69,10 @@ Problem drawn_problem() {
   return problem;
 }
 
-TEST(PackedSweeps, SolveRowsToTheirLaws) {
-  Problem problem = drawn_problem();
+class PackedSweepsOf : public testing::TestWithParam<bool> {};
+
+TEST_P(PackedSweepsOf, RowsSolveThemToTheirLaws) {
+  Problem problem = drawn_problem(GetParam());
   ASSERT_GT(problem.residual(), 0.1);
   PackedSweeps sweeps(kBodies, problem.rows.size());
   ASSERT_TRUE(sweeps.pack(problem.rows.data(), problem.patches, problem.bodies));
@@ -74,19 +81,26 @@ TEST(PackedSweeps, SolveRowsToTheirLaws) {
   EXPECT_LE(problem.residual(), 1e-5);
 }
 
-TEST(PackedSweeps, GiveTheSameBytesByFourAndByEight) {
-  Problem by_four = drawn_problem(), by_eight = drawn_problem();
-  PackedSweeps sweeps(kBodies, by_four.rows.size());
+TEST_P(PackedSweepsOf, RowsGiveTheSameBytesByVectorsOfAnyWidth) {
+  std::vector<Problem> problems;
   std::vector<int> counts;
-  for (const auto& [problem, lanes] : {std::pair(&by_four, 4), std::pair(&by_eight, 8)}) {
-    ASSERT_TRUE(sweeps.pack(problem->rows.data(), problem->patches, problem->bodies));
-    counts.push_back(sweeps.run(problem->rows.data(), problem->velocities().data(), {1000, 0.95, 1e-5, 0.0, lanes}));
+  for (const int width : {4, 8, 16}) {
+    Problem& problem = problems.emplace_back(drawn_problem(GetParam()));
+    PackedSweeps sweeps(kBodies, problem.rows.size());
+    ASSERT_TRUE(sweeps.pack(problem.rows.data(), problem.patches, problem.bodies));
+    counts.push_back(sweeps.run(problem.rows.data(), problem.velocities().data(), {1000, 0.95, 1e-5, 0.0, width}));
   }
-  EXPECT_EQ(counts[0], counts[1]);
-  for (std::size_t i = 0; i < by_four.rows.size(); ++i) {
-    EXPECT_TRUE(std::equal(by_four.rows[i].lambda, by_four.rows[i].lambda + 3, by_eight.rows[i].lambda)) << i;
+  for (const std::size_t k : {1U, 2U}) {
+    EXPECT_EQ(counts[0], counts[k]);
+    for (std::size_t i = 0; i < problems[0].rows.size(); ++i) {
+      const double *one = problems[0].rows[i].lambda, *other = problems[k].rows[i].lambda;
+      EXPECT_TRUE(std::equal(one, one + 3, other)) << i;
+    }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(SharedAndOwnAxes, PackedSweepsOf, testing::Bool(),
+                         [](const auto& kind) { return kind.param ? "OwnAxes" : "SharedAxes"; });
 
 TEST(PackedSweeps, GiveTheSameBytesInHalvesByOneThreadAndByTwo) {
   std::vector<Problem> problems;
