@@ -21,7 +21,7 @@ struct Two {
   T low, high;
 };
 
-// Plain vectors.
+/// How a type holds its lanes: here, in one vector.
 template <class T>
 struct LaneTraits {
   static constexpr int width = sizeof(T) / sizeof(float);
@@ -75,11 +75,6 @@ template <class T>
 SNUG_INLINE Two<T> operator/(Two<T> x, Two<T> y) {
   return {x.low / y.low, x.high / y.high};
 }
-template <class M>
-SNUG_INLINE Two<M> operator&(Two<M> x, Two<M> y) {
-  return {x.low & y.low, x.high & y.high};
-}
-
 /// Masks of x >= y.
 template <class T>
 SNUG_INLINE auto at_least(T x, T y) {
