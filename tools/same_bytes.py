@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """same_bytes.py: builds what simulates and plans with each compiler, optimisation and processor that this machine has, and compares the states that
-twenty scenes and a packing session come to (tests/same_bytes/states.cpp). Exit code 1 where they differ.
+twenty scenes, a heap and a packing session come to (tests/same_bytes/states.cpp). Exit code 1 where they differ.
 
 Variants: gcc-O3, gcc-O1, clang-O3, clang-O1, and the same with aarch64- before. On x86-64 each runs with the instructions of the processor, and with
 AVX2 and fused multiply-add left out by the C library. aarch64 needs g++ for it and qemu (Debian: g++-aarch64-linux-gnu qemu-user-static); what it

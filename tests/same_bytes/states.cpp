@@ -1,5 +1,5 @@
-// Prints the hashes of the states that twenty scenes and a packing session come to, as JSON: what builds by different
-// compilers, for different processors, are compared by (tools/same_bytes.py).
+// Prints the hashes of the states that twenty scenes, a heap and a packing session come to, as JSON: what builds by
+// different compilers, for different processors, are compared by (tools/same_bytes.py).
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -19,8 +19,9 @@ namespace {
 
 using namespace snug;
 
-constexpr double kUntil = 0.5;  // s: every scene is in contact by then
-constexpr int kItems = 3;       // of the session
+constexpr double kUntil = 0.5;      // s: every scene is in contact by then
+constexpr double kHeapUntil = 1.5;  // s: most boxes are one group, which is swept
+constexpr int kItems = 3;           // of the session
 const std::vector<std::string> kScenes = {"bench/s1-stack.yaml",
                                           "bench/s2-drop.yaml",
                                           "bench/s3-creep.yaml",
@@ -40,9 +41,9 @@ const std::vector<std::string> kScenes = {"bench/s1-stack.yaml",
                                           "init/scene.yaml",
                                           "tosses/cube.yaml"};
 
-std::uint64_t run_scene(const model::Scenario& scenario) {
+std::uint64_t run_scene(const model::Scenario& scenario, double until = kUntil) {
   runs::RunOptions options;
-  options.until = kUntil;
+  options.until = until;
   return runs::run(scenario, options).state_hash;
 }
 
@@ -81,6 +82,7 @@ int main(int argc, char** argv) {
     }
     fmt::print(",\n \"drawn drop\": \"{:016x}\"", run_scene(bench::drawn_drop({.seed = 3})));
     fmt::print(",\n \"drawn pile\": \"{:016x}\"", run_scene(bench::drawn_pile({.count = 27, .side = 3, .seed = 2})));
+    fmt::print(",\n \"drawn heap\": \"{:016x}\"", run_scene(bench::drawn_pile({300, 7, 2}), kHeapUntil));
     fmt::print(",\n \"session\": \"{}\"\n}}\n", run_session(scenarios));
   } catch (const InputError& error) {
     std::fprintf(stderr, "snug_states: %s\n", error.what());
