@@ -76,6 +76,22 @@ class WorkerTest(unittest.TestCase):
         self.assertGreater(state["poses"][2][2], 98.0)  # held where it waits, but for one step of falling
         self.assertFalse(state["failed"])
 
+    def test_a_body_that_is_followed_is_told_after_each_step(self):
+        self.ask({"build": SCENE})
+        state = self.ask({"do": [{"steps": 1}, {"steps": 2, "follow": 0}]})
+        self.assertEqual(len(state["path"]), 2)
+        self.assertAlmostEqual(state["path"][0][2], 1.0 - 0.1 - 0.2)
+        self.assertEqual(state["path"][1], state["poses"][0])
+        self.assertNotIn("path", self.ask({"do": [{"steps": 1}]}))
+
+    def test_a_path_ends_where_numbers_do(self):
+        self.ask({"build": SCENE})
+        lost = {"set": 0, "pose": pose(1.0), "velocity": [0.0, 0.0, 1e308, 0.0, 0.0, 0.0]}
+        state = self.ask({"do": [lost, {"steps": 200, "follow": 0}]})
+        self.assertEqual(state["path"], [list(row) for row in state["path"] if row[2] < float("inf")])
+        self.assertLess(len(state["path"]), 200)
+        self.assertTrue(state["failed"])
+
     def test_acts_are_done_in_their_order(self):
         self.ask({"build": SCENE})
         entering = {"insert": 2, "pose": pose(3.0), "velocity": [0.0] * 6}
@@ -83,6 +99,10 @@ class WorkerTest(unittest.TestCase):
         state = self.ask({"do": [entering, push, {"steps": 1}]})
         self.assertAlmostEqual(state["poses"][2][2], 2.9)
         self.assertAlmostEqual(state["velocities"][2][0], 0.2)
+
+    def test_bodies_that_are_not_solid_are_refused_where_an_engine_takes_none(self):
+        hollow = {**SCENE, "bodies": [{**SCENE["bodies"][0], "moments": [1.0, 1.0, 1.0], "middle": [0.0, 0.0, 0.0]}]}
+        self.assertIn("solid bodies alone", self.ask({"build": hollow})["error"])
 
     def test_time_starts_anew_with_a_scene(self):
         self.ask({"build": SCENE})

@@ -20,6 +20,8 @@ class Engine {
   virtual void build(const Scene& scene, double dt) = 0;
   /// Advances by the dt given to build().
   virtual void step() = 0;
+  /// Advances `count` times; the poses of a body after each step, or none where the engine gave up.
+  [[nodiscard]] virtual std::vector<Pose> follow(int body, int count);
   /// True once the engine has given up on the run (its numbers became infinite or the like).
   [[nodiscard]] virtual bool has_failed() const { return false; }
   /// CPU seconds of the process that does the steps; one of its own counts its steps alone.

@@ -29,7 +29,15 @@ json to_json(const Pose& X) {
   return {X.p.x(), X.p.y(), X.p.z(), q.w(), q.x(), q.y(), q.z()};
 }
 
-json to_json(const Contact& contact) { return {{"friction", contact.friction}, {"restitution", contact.restitution}}; }
+json to_json(const Contact& contact) {
+  return {{"friction", contact.friction},
+          {"restitution", contact.restitution},
+          {"stiffness", contact.stiffness},
+          {"damping", contact.damping},
+          {"time_constant", contact.time_constant},
+          {"damping_ratio", contact.damping_ratio},
+          {"impedance", contact.impedance}};
+}
 
 Vector3 vector_of(const json& form, std::size_t from) {
   return {form.at(from).get<double>(), form.at(from + 1).get<double>(), form.at(from + 2).get<double>()};
@@ -41,6 +49,8 @@ json to_json(const Scene& scene, double dt) {
     bodies.push_back({{"half", to_json(box.half)},
                       {"is_round", box.is_round},
                       {"mass", box.mass},
+                      {"moments", box.inertia_factor == 1.0 ? json(nullptr) : to_json(moments_of(box))},
+                      {"middle", to_json(box.middle)},
                       {"pose", to_json(box.X_WB)},
                       {"present", box.is_present}});
   }
@@ -122,10 +132,14 @@ class ProcessEngine final : public Engine {
   double cpu_seconds() const override { return state().at("cpu"); }
   bool has_failed() const override { return state().at("failed"); }
 
-  Pose pose(int body) const override {
-    const json& form = state().at("poses").at(static_cast<std::size_t>(body));
-    const Quaternion q(number(form, 3), number(form, 4), number(form, 5), number(form, 6));
-    return {q.normalized().toRotationMatrix(), vector_of(form, 0)};
+  Pose pose(int body) const override { return pose_of(state().at("poses").at(static_cast<std::size_t>(body))); }
+
+  std::vector<Pose> follow(int body, int count) override {
+    pending_.push_back({{"steps", count}, {"follow", body}});
+    std::vector<Pose> poses;
+    for (const json& form : state().at("path")) poses.push_back(pose_of(form));
+    if (has_failed()) poses.clear();
+    return poses;
   }
 
   Twist velocity(int body) const override {
@@ -156,7 +170,11 @@ class ProcessEngine final : public Engine {
   }
 
  private:
-  static double number(const json& form, std::size_t at) { return form.at(at).get<double>(); }
+  static Pose pose_of(const json& form) {
+    const auto number = [&](std::size_t at) { return form.at(at).get<double>(); };
+    const Quaternion q(number(3), number(4), number(5), number(6));
+    return {q.normalized().toRotationMatrix(), vector_of(form, 0)};
+  }
 
   const json& state() const {
     if (!pending_.empty()) state_ = worker_.ask({{"do", pending_}});

@@ -217,6 +217,16 @@ double Engine::cpu_seconds() const {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+std::vector<Pose> Engine::follow(int body, int count) {
+  std::vector<Pose> poses;
+  for (int i = 0; i < count; ++i) {
+    step();
+    if (has_failed()) return {};
+    poses.push_back(pose(body));
+  }
+  return poses;
+}
+
 std::vector<Result> measure(Engine& engine, const std::string& scene) {
   if (scene == "s1") return measure_stack(engine);
   if (scene == "s2") return measure_drop(engine);

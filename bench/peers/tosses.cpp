@@ -174,18 +174,15 @@ void fill_start(const Flights& flights, Toss& toss) {
 Error predict(Engine& engine, const Toss& toss, const Vector3& com) {
   const Pose X_CB{Matrix3::Identity(), -com};
   engine.set_motion(0, toss.X_WC, toss.V_WC);
+  const auto step_of = [](double time) { return static_cast<int>(std::ceil((time - 1e-9) / kStep)); };
+  const std::vector<Pose> path = engine.follow(0, step_of(toss.times.back()));
+  if (path.empty()) return {};
+  const auto pose_after = [&](int steps) { return steps > 0 ? path[static_cast<std::size_t>(steps - 1)] : toss.X_WC; };
   Error error{0.0, 0.0, false};
-  Pose before = engine.pose(0), now = before;
   double angle = 0.0;
-  int steps = 0;
   for (std::size_t k = 1; k < toss.times.size(); ++k) {
-    while (steps * kStep < toss.times[k] - 1e-9) {
-      before = now;
-      engine.step();
-      if (engine.has_failed()) return {};
-      now = engine.pose(0);
-      ++steps;
-    }
+    const int steps = step_of(toss.times[k]);
+    const Pose before = pose_after(steps - 1), now = pose_after(steps);
     const double share = 1.0 - (steps * kStep - toss.times[k]) / kStep;
     const Pose X_WC{before.R * exp_rotation(share * log_rotation(before.R.transpose() * now.R)),
                     before.p + share * (now.p - before.p)};
@@ -211,6 +208,8 @@ std::vector<Result> measure_tosses(const std::function<std::unique_ptr<Engine>()
     (i % kHeldBack == kHeldBack - 1 ? held : fitted).push_back(i);
   }
   const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  std::vector<std::unique_ptr<Engine>> engines(static_cast<std::size_t>(threads));
+  for (std::unique_ptr<Engine>& engine : engines) engine = make();
   std::vector<Toss> known;
   for (const std::size_t i : fitted) known.push_back(tosses[i]);
   const Flights flights = fit_flights(known);
@@ -218,10 +217,10 @@ std::vector<Result> measure_tosses(const std::function<std::unique_ptr<Engine>()
   const auto predict_all = [&](const Eigen::VectorXd& x, const std::vector<std::size_t>& which) {
     const Scene scene = scene_of(x, flights);
     std::vector<Error> errors(which.size());
-    parallel_for(static_cast<int>(which.size()), threads, [&](int i, int) {
-      const std::unique_ptr<Engine> engine = make();
-      engine->build(scene, kStep);
-      errors[static_cast<std::size_t>(i)] = predict(*engine, tosses[which[static_cast<std::size_t>(i)]], flights.com);
+    parallel_for(static_cast<int>(which.size()), threads, [&](int i, int thread) {
+      Engine& engine = *engines[static_cast<std::size_t>(thread)];
+      engine.build(scene, kStep);
+      errors[static_cast<std::size_t>(i)] = predict(engine, tosses[which[static_cast<std::size_t>(i)]], flights.com);
     });
     return errors;
   };

@@ -40,6 +40,11 @@ class Engine {
     const steps = option("--steps", 2), slop = option("--slop", 1);
     if (steps) [physics.mNumVelocitySteps, physics.mNumPositionSteps] = steps;
     if (slop) [physics.mPenetrationSlop] = slop;
+    const soft = scene.box_container;
+    if (soft.stiffness > 0) {  // N/m and Ns/m: how deep the first body's weight sinks, and how slowly overlaps go
+      physics.mPenetrationSlop = scene.bodies[0].mass * Math.hypot(...scene.gravity) / soft.stiffness;
+      physics.mBaumgarte = soft.damping / 400;
+    }
     this.system.SetPhysicsSettings(physics);
     this.bodies = new Map();
     scene.bodies.forEach((body, i) => this.add(i, body));
@@ -61,6 +66,12 @@ class Engine {
       const round = new Jolt.CylinderShapeSettings(half[2], half[0], rounding);
       shape = new Jolt.RotatedTranslatedShapeSettings(new Jolt.Vec3(0, 0, 0), turn, round).Create().Get();
     }
+    if (body.moments) {  // the body's frame is at its centre of mass
+      const middle = new Jolt.Vec3(...body.middle), back = new Jolt.Vec3(...body.middle.map((x) => -x));
+      const box = new Jolt.BoxShapeSettings(new Jolt.Vec3(...half), rounding);
+      const aside = new Jolt.RotatedTranslatedShapeSettings(middle, Jolt.Quat.prototype.sIdentity(), box);
+      shape = new Jolt.OffsetCenterOfMassShapeSettings(back, aside).Create().Get();
+    }
     const settings = new Jolt.BodyCreationSettings(
       shape, position(body.pose), rotation(body.pose),
       is_box ? Jolt.EMotionType_Dynamic : Jolt.EMotionType_Static, is_box ? FREE : FIXED);
@@ -74,6 +85,12 @@ class Engine {
     if (is_box) {
       settings.mOverrideMassProperties = Jolt.EOverrideMassProperties_CalculateInertia;
       settings.mMassPropertiesOverride.mMass = body.mass;
+      if (body.moments) {
+        settings.mOverrideMassProperties = Jolt.EOverrideMassProperties_MassAndInertiaProvided;
+        const moments = new Jolt.Vec3(...body.moments);
+        settings.mMassPropertiesOverride.mInertia = Jolt.Mat44.prototype.sScaleVec3(moments);
+        Jolt.destroy(moments);
+      }
     }
     const made = this.interface.CreateBody(settings);
     this.interface.AddBody(made.GetID(), is_box ? Jolt.EActivation_Activate : Jolt.EActivation_DontActivate);
@@ -108,6 +125,12 @@ class Engine {
     [f, t].forEach((thing) => Jolt.destroy(thing));
   }
 
+  pose(body) {
+    const rigid = this.bodies.get(body);
+    const p = rigid.GetCenterOfMassPosition(), q = rigid.GetRotation();
+    return [p.GetX(), p.GetY(), p.GetZ(), q.GetW(), q.GetX(), q.GetY(), q.GetZ()];
+  }
+
   state() {
     const poses = [], velocities = [];
     let failed = false;
@@ -117,10 +140,8 @@ class Engine {
         velocities.push([0, 0, 0, 0, 0, 0]);
         return;
       }
-      const rigid = this.bodies.get(i);
-      const p = rigid.GetCenterOfMassPosition(), q = rigid.GetRotation();
+      const rigid = this.bodies.get(i), pose = this.pose(i);
       const v = rigid.GetLinearVelocity(), w = rigid.GetAngularVelocity();
-      const pose = [p.GetX(), p.GetY(), p.GetZ(), q.GetW(), q.GetX(), q.GetY(), q.GetZ()];
       failed ||= !pose.every(Number.isFinite);
       poses.push(failed ? body.pose : pose);
       velocities.push([v.GetX(), v.GetY(), v.GetZ(), w.GetX(), w.GetY(), w.GetZ()].map((x) => (failed ? 0 : x)));
@@ -128,14 +149,20 @@ class Engine {
     return { poses, velocities, cpu: this.cpu, failed };
   }
 
-  act({ set, insert, push, steps = 0, pose, velocity, force, torque }) {
+  act({ set, insert, push, steps = 0, follow, pose, velocity, force, torque }) {
     const moved = set ?? insert;
     if (moved !== undefined) {
       this.absent.delete(moved);
       this.set_motion(moved, pose, velocity);
     }
     if (push !== undefined) this.push(push, force, torque);
-    for (let i = 0; i < steps; ++i) this.step();
+    for (let i = 0; i < steps; ++i) {
+      this.step();
+      if (follow === undefined) continue;
+      const now = this.pose(follow);
+      if (!now.every(Number.isFinite)) return;
+      this.path.push(now);
+    }
   }
 
   answer(question) {
@@ -143,9 +170,12 @@ class Engine {
       this.build(question.build);
       for (const i of this.absent) question.build.bodies[i].pose = this.parked(i);
     }
-    for (const act of question.do ?? []) this.act(act);
+    const acts = question.do ?? [];
+    this.path = [];
+    for (const act of acts) this.act(act);
     // The package does not tell contact forces.
-    return question.normal_force ? { normal_force: null } : this.state();
+    if (question.normal_force) return { normal_force: null };
+    return acts.some((act) => act.follow !== undefined) ? { ...this.state(), path: this.path } : this.state();
   }
 }
 

@@ -12,6 +12,8 @@ def numbers(values):
 
 
 class Mujoco(Engine):
+    takes_moments = True
+
     def __init__(self, options):
         self.options = options
 
@@ -27,14 +29,23 @@ class Mujoco(Engine):
             place = f'pos="{numbers(body["pose"][:3])}" quat="{numbers(body["pose"][3:])}"'
             if is_fixed:
                 fixed.append(f'<geom {shape} {place} priority="1"/>')
+            elif body.get("moments"):
+                inertial = f'<inertial pos="0 0 0" mass="{body["mass"]}" diaginertia="{numbers(body["moments"])}"/>'
+                geom = f'<geom {shape} pos="{numbers(body["middle"])}"/>'
+                free.append(f'<body name="{i}" {place}><freejoint/>{inertial}{geom}</body>')
             else:
                 free.append(f'<body name="{i}" {place}><freejoint/><geom {shape} mass="{body["mass"]}"/></body>')
+        options = self.options
         if scene["plane"] is not None:
+            contact, soft = scene["box_container"], ""
+            if contact["time_constant"] > 0:
+                solref = numbers([contact["time_constant"], contact["damping_ratio"]])
+                solimp = numbers([contact["impedance"], options.solimp[1], 0.001])
+                soft = f'solref="{solref}" solimp="{solimp}"'
             fixed.append(
                 f'<geom name="plane" type="plane" size="5 5 1" pos="0 0 {scene["plane"]}" priority="1" '
-                f'friction="{scene["box_container"]["friction"]} 0.005 0.0001"/>'
+                f'friction="{contact["friction"]} 0.005 0.0001" {soft}/>'
             )
-        options = self.options
         self.model = mujoco.MjModel.from_xml_string(
             f"""<mujoco><size memory="2G"/>
 <option timestep="{scene["dt"]}" gravity="{numbers(scene["gravity"])}" cone="{options.cone}" impratio="{options.impratio}"/>

@@ -1,7 +1,8 @@
 """What a worker of bench_peers answers: one line of JSON for each line that it reads.
 
 A worker derives from `Engine` and calls `serve`. Poses are [x, y, z, qw, qx, qy, qz] in W, velocities [v, w] in W with v at
-the centre of the body, SI units. A body of mass 0 is fixed. Questions:
+the centre of the body, SI units. A body of mass 0 is fixed. "moments", where not null, are about its axes, and "middle" is
+where its shape is from its centre of mass. Questions:
 
     {"build": SCENE}                          a new scene, at rest; the answer is the state
     {"do": [ACT, ...]}                        in this order; the answer is the state
@@ -9,9 +10,10 @@ the centre of the body, SI units. A body of mass 0 is fixed. Questions:
 
 The answer to a question that failed is {"error"}.
 
-ACT is {"steps": N}, {"set": BODY, "pose", "velocity"}, {"insert": BODY, "pose", "velocity"} or {"push": BODY, "force",
-"torque"}: a wrench about the centre of the body during the next step. A state is {"poses", "velocities", "cpu", "failed"};
-"cpu" is the processor time of this process that steps took, s.
+ACT is {"steps": N}, {"steps": N, "follow": BODY}, {"set": BODY, "pose", "velocity"}, {"insert": BODY, "pose", "velocity"} or
+{"push": BODY, "force", "torque"}: a wrench about the centre of the body during the next step. A state is {"poses",
+"velocities", "cpu", "failed"}; "cpu" is the processor time of this process that steps took, s. After steps that followed a
+body it has "path", too: the body's pose after each, up to the first that is not finite.
 """
 
 import json
@@ -26,6 +28,8 @@ PLANE = -1
 
 class Engine:
     """One engine with one scene. `self.scene` is as bench_peers sent it."""
+
+    takes_moments = False  # of bodies that are no solid boxes, with their centre of mass aside
 
     def build(self, scene):
         raise NotImplementedError
@@ -78,9 +82,13 @@ def serve(engine):
                 absent = {i for i, body in enumerate(engine.scene["bodies"]) if not body["present"]}
                 for i in absent:
                     engine.scene["bodies"][i]["pose"] = engine.parked(i)[0]
+                if not engine.takes_moments and any(body.get("moments") for body in engine.scene["bodies"]):
+                    raise ValueError("this worker takes solid bodies alone")
                 engine.build(engine.scene)
                 cpu = 0.0
-            for act in question.get("do", []):
+            acts = question.get("do", [])
+            path = []
+            for act in acts:
                 if "set" in act or "insert" in act:
                     body = act.get("set", act.get("insert"))
                     absent.discard(body)
@@ -93,10 +101,17 @@ def serve(engine):
                     begin = time.process_time()
                     engine.step()
                     cpu += time.process_time() - begin
+                    if "follow" in act:
+                        pose = [float(x) for x in engine.motion(act["follow"])[0]]
+                        if not all(map(math.isfinite, pose)):
+                            break
+                        path.append(pose)
             if "normal_force" in question:
                 answer = {"normal_force": engine.normal_force(*question["normal_force"])}
             else:
                 answer = state(engine, cpu)
+                if any("follow" in act for act in acts):
+                    answer["path"] = path
         except Exception:
             answer = {"error": traceback.format_exc().strip()}
         answers.write(json.dumps(answer) + "\n")

@@ -10,6 +10,8 @@ MULTIPLY = rapier.CoefficientCombineRule.MULTIPLY
 
 
 class Rapier(Engine):
+    takes_moments = True
+
     def __init__(self, options):
         self.options = options
 
@@ -19,6 +21,11 @@ class Rapier(Engine):
         parameters.dt = scene["dt"]
         if self.options.iterations:
             parameters.num_solver_iterations = self.options.iterations
+        soft = scene["box_container"]
+        if soft["stiffness"] > 0:  # N/m: the frequency at which the first body swings on it
+            frequency = math.sqrt(soft["stiffness"] / scene["bodies"][0]["mass"]) / (2 * math.pi)
+            spring = rapier.SpringCoefficients(frequency, 10 * soft["damping_ratio"])
+            parameters.contact_softness = parameters.static_contact_softness = spring
         self.world.set_num_threads(1)
         self.dt, self.bodies, self.colliders, self.pushed = scene["dt"], {}, {}, []
         for i, body in enumerate(scene["bodies"]):
@@ -43,7 +50,14 @@ class Rapier(Engine):
         shape = shape.friction_combine_rule(MULTIPLY).restitution_combine_rule(MULTIPLY)
         if body["mass"] > 0:
             rigid = rapier.RigidBody.dynamic().can_sleep(False)
-            shape = shape.mass(body["mass"])
+            if body.get("moments"):
+                middle = body["middle"]
+                shape = shape.translation(rapier.Vec3(*middle))
+                com = rapier.Vec3(*[-x for x in middle])  # in the frame of the shape
+                moments = rapier.Vec3(*body["moments"])
+                shape = shape.mass_properties(rapier.MassProperties(com, body["mass"], moments, rapier.Rotation3.identity()))
+            else:
+                shape = shape.mass(body["mass"])
         else:
             rigid = rapier.RigidBody.fixed()
         handle = self.world.add_body(rigid.position(isometry(body["pose"])), colliders=[shape])
