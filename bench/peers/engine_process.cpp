@@ -30,12 +30,9 @@ json to_json(const Pose& X) {
 }
 
 json to_json(const Contact& contact) {
-  return {{"friction", contact.friction},
-          {"restitution", contact.restitution},
-          {"stiffness", contact.stiffness},
-          {"damping", contact.damping},
-          {"time_constant", contact.time_constant},
-          {"damping_ratio", contact.damping_ratio},
+  return {{"friction", contact.friction},           {"restitution", contact.restitution},
+          {"stiffness", contact.stiffness},         {"damping", contact.damping},
+          {"time_constant", contact.time_constant}, {"damping_ratio", contact.damping_ratio},
           {"impedance", contact.impedance}};
 }
 
