@@ -175,8 +175,9 @@ Error predict(Engine& engine, const Toss& toss, const Vector3& com) {
   const Pose X_CB{Matrix3::Identity(), -com};
   engine.set_motion(0, toss.X_WC, toss.V_WC);
   const auto step_of = [](double time) { return static_cast<int>(std::ceil((time - 1e-9) / kStep)); };
-  const std::vector<Pose> path = engine.follow(0, step_of(toss.times.back()));
-  if (path.empty()) return {};
+  const int last = step_of(toss.times.back());
+  const std::vector<Pose> path = engine.follow(0, last);
+  if (std::ssize(path) < last) return {};
   const auto pose_after = [&](int steps) { return steps > 0 ? path[static_cast<std::size_t>(steps - 1)] : toss.X_WC; };
   Error error{0.0, 0.0, false};
   double angle = 0.0;

@@ -41,9 +41,9 @@ class Engine {
     if (steps) [physics.mNumVelocitySteps, physics.mNumPositionSteps] = steps;
     if (slop) [physics.mPenetrationSlop] = slop;
     const soft = scene.box_container;
-    if (soft.stiffness > 0) {  // N/m and Ns/m: how deep the first body's weight sinks, and how slowly overlaps go
+    if (soft.stiffness > 0) {  // N/m: overlap that is left, as deep as the first body's weight sinks
       physics.mPenetrationSlop = scene.bodies[0].mass * Math.hypot(...scene.gravity) / soft.stiffness;
-      physics.mBaumgarte = soft.damping / 400;
+      physics.mBaumgarte = soft.damping / 400;  // Ns/m: with 200, the most of tosses, a step takes half of the rest
     }
     this.system.SetPhysicsSettings(physics);
     this.bodies = new Map();
@@ -56,22 +56,24 @@ class Engine {
     this.cpu = 0;
   }
 
-  add(i, body) {
-    const is_box = body.mass > 0;
-    const half = body.half;
+  shape_of({ half, is_round, moments, middle }) {
     const rounding = Math.min(0.0005, Math.min(...half) / 2);
-    let shape = new Jolt.BoxShape(new Jolt.Vec3(...half), rounding);
-    if (body.is_round) {  // its axis is y
+    if (is_round) {  // its axis is y
       const turn = Jolt.Quat.prototype.sRotation(new Jolt.Vec3(1, 0, 0), Math.PI / 2);
       const round = new Jolt.CylinderShapeSettings(half[2], half[0], rounding);
-      shape = new Jolt.RotatedTranslatedShapeSettings(new Jolt.Vec3(0, 0, 0), turn, round).Create().Get();
+      return new Jolt.RotatedTranslatedShapeSettings(new Jolt.Vec3(0, 0, 0), turn, round).Create().Get();
     }
-    if (body.moments) {  // the body's frame is at its centre of mass
-      const middle = new Jolt.Vec3(...body.middle), back = new Jolt.Vec3(...body.middle.map((x) => -x));
-      const box = new Jolt.BoxShapeSettings(new Jolt.Vec3(...half), rounding);
-      const aside = new Jolt.RotatedTranslatedShapeSettings(middle, Jolt.Quat.prototype.sIdentity(), box);
-      shape = new Jolt.OffsetCenterOfMassShapeSettings(back, aside).Create().Get();
-    }
+    if (!moments) return new Jolt.BoxShape(new Jolt.Vec3(...half), rounding);
+    const box = new Jolt.BoxShapeSettings(new Jolt.Vec3(...half), rounding);
+    const unturned = Jolt.Quat.prototype.sIdentity();
+    const aside = new Jolt.RotatedTranslatedShapeSettings(new Jolt.Vec3(...middle), unturned, box);
+    // The body's frame is at its centre of mass.
+    return new Jolt.OffsetCenterOfMassShapeSettings(new Jolt.Vec3(...middle.map((x) => -x)), aside).Create().Get();
+  }
+
+  add(i, body) {
+    const is_box = body.mass > 0;
+    const shape = this.shape_of(body);
     const settings = new Jolt.BodyCreationSettings(
       shape, position(body.pose), rotation(body.pose),
       is_box ? Jolt.EMotionType_Dynamic : Jolt.EMotionType_Static, is_box ? FREE : FIXED);

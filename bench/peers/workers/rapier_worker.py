@@ -24,7 +24,7 @@ class Rapier(Engine):
         soft = scene["box_container"]
         if soft["stiffness"] > 0:  # N/m: the frequency at which the first body swings on it
             frequency = math.sqrt(soft["stiffness"] / scene["bodies"][0]["mass"]) / (2 * math.pi)
-            spring = rapier.SpringCoefficients(frequency, 10 * soft["damping_ratio"])
+            spring = rapier.SpringCoefficients(frequency, 10 * soft["damping_ratio"])  # 10 is its default
             parameters.contact_softness = parameters.static_contact_softness = spring
         self.world.set_num_threads(1)
         self.dt, self.bodies, self.colliders, self.pushed = scene["dt"], {}, {}, []

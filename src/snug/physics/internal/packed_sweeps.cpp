@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kMostPoints = 4;  ///< of a patch in one lane of a block; more of them follow in a later one
 constexpr int kManyPoints = 3;  ///< patches of as many rows, or more, share blocks; those of fewer with their like
-constexpr std::size_t kMostOpen = 48;  ///< blocks that wait for more patches
+constexpr std::size_t kMostOpen = 48;  ///< half blocks that wait for more patches
 constexpr std::ptrdiff_t kNear = 64;   ///< half blocks among which one is looked for another
 constexpr int kWorstUse = 5;  ///< of sixteen lanes that hold a row, on average: below it one row at a time serves
 constexpr double kSameAxes = 1e-12;  ///< relative
