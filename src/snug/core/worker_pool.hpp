@@ -22,8 +22,9 @@ class WorkerPool {
   /// Workers that may be at work at a time, the caller being worker 0.
   [[nodiscard]] int size() const { return 1 + static_cast<int>(helpers_.size()); }
 
-  /// Calls job(index, worker) once for each index 0 .. count-1, in an order and by workers that differ from call to
-  /// call, and returns when all have ended. Jobs must not throw; not to be called from within one.
+  /// Calls job(index, worker) once for each index 0 .. count-1 and returns when all have ended. Each worker begins with
+  /// its share of the indices, the same from call to call, so that what it works on stays in its cache; then it takes
+  /// what others have left. Jobs must not throw; not to be called from within one.
   template <class Job>
   void run(int count, const Job& job) noexcept {
     run_erased(
@@ -43,12 +44,16 @@ class WorkerPool {
 
   /// state_: twice the number of runs that have ended, one more while one is open to helpers; below it helpers at work.
   static constexpr std::uint64_t kOpen = 1 << 16;
+  /// Indices that nobody has taken yet.
+  struct alignas(64) Share {
+    std::atomic<int> next{0};
+    int end = 0;
+  };
   static bool is_open(std::uint64_t state) { return state / kOpen % 2 == 1; }
 
   Function function_ = nullptr;
   const void* context_ = nullptr;
-  int count_ = 0;
-  alignas(64) std::atomic<int> next_{0};
+  std::vector<Share> shares_;  ///< one of each worker
   alignas(64) std::atomic<std::uint64_t> state_{0};
   std::atomic<bool> is_over_{false};
   std::atomic<int> helpers_asleep_{0}, callers_asleep_{0};
