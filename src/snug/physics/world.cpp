@@ -135,6 +135,7 @@ internal::Scratch::Scratch(const WorldModel& model, int threads) : pool(threads)
   whitening.resize(n);
   dense_whitening = BoundedVector<Matrix6>(n);
   last_torque.resize(n);
+  centres.resize(n);
   u.resize(6 * n + 2);
   shift.resize(6 * n + 2);
   parent.resize(n);
@@ -156,6 +157,7 @@ internal::Scratch::Scratch(const WorldModel& model, int threads) : pool(threads)
   workers.reserve(static_cast<std::size_t>(pool.size()));
   for (int i = 0; i < pool.size(); ++i) {
     NewtonScratch newton(n, row_capacity);
+    newton.group.centres = centres.data();
     PositionCorrection positions(n, row_capacity, newton.open_group.room());
     workers.push_back({std::move(newton), std::move(positions), {}, {}});
     workers.back().element_bodies.reserve(n);

@@ -1,43 +1,41 @@
-// GroupHalves: cuts the bodies of a group in two, with few contacts between the halves.
+// BodyHalves: cuts bodies in two by a plane, with few contacts between the halves.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "snug/spatial/pose.hpp"
+
 namespace snug::physics::internal {
 
-struct RowPatch;
-
-/// Bodies by their distance, in contacts, from one at the rim of the group: those nearer than a cut are one half. What
-/// lies between the halves is the seam. All of it depends on the group alone. Never allocates after construction.
-class GroupHalves {
+/// The plane stands across the longest way of the centres of the bodies. What has bodies on both sides is the seam. All
+/// of it depends on the bodies and what lies between them alone. Never allocates after construction.
+class BodyHalves {
  public:
   enum Part : std::int8_t { First, Second, Seam };
 
-  GroupHalves(std::size_t bodies, std::size_t patches);
+  explicit BodyHalves(std::size_t bodies);
 
-  /// `bodies`: active bodies of the group. The cut leaves the least work to whoever sweeps the larger half, then the
-  /// seam.
-  void cut(std::span<const RowPatch> patches, std::span<const int> bodies);
-  /// Of an active body.
-  [[nodiscard]] Part of(int body) const { return level_[static_cast<std::size_t>(body)] < cut_ ? First : Second; }
-  [[nodiscard]] Part of(const RowPatch& patch) const;
+  /// Active bodies, and the centres of all by active index, m, W.
+  void begin(std::span<const int> bodies, const Vector3* centres);
+  /// Rows between two of these bodies; -1: one that does not move.
+  void add(int ia, int ib, int rows);
+  /// The cut that leaves the least work to whoever has the larger half, then the seam.
+  void cut();
+  [[nodiscard]] Part of(int body) const { return slab_[static_cast<std::size_t>(body)] < cut_ ? First : Second; }
+  /// Of what lies between two bodies, of which one may be -1.
+  [[nodiscard]] Part of(int ia, int ib) const;
 
  private:
-  void list_neighbors(std::span<const RowPatch> patches, std::span<const int> bodies);
-  void find_levels(std::span<const int> bodies, int start);
-  void choose_cut(std::span<const RowPatch> patches);
+  static constexpr int kSlabs = 128;  ///< between which the cut may be
 
-  std::vector<int> first_;      ///< of each active body, in neighbors_
-  std::vector<int> end_;        ///< and the end of them
-  std::vector<int> neighbors_;  ///< bodies
-  std::vector<int> level_;      ///< of each active body: contacts between it and the start
-  std::vector<int> queue_;      ///< bodies in the order in which they were reached
-  std::vector<int> inside_;     ///< rows within each level
-  std::vector<int> between_;    ///< rows from each level to the next
-  int cut_ = 0;                 ///< first level of the second half
+  std::vector<std::uint8_t> slab_;        ///< of each active body
+  std::array<int, kSlabs + 1> first_{};   ///< rows that are in the first half from this cut on
+  std::array<int, kSlabs + 1> second_{};  ///< rows that are in the second half up to this cut
+  int cut_ = 0;                           ///< first slab of the second half
 };
 
 }  // namespace snug::physics::internal

@@ -64,6 +64,7 @@ struct GroupScratch {
   std::unique_ptr<ClusterScratch> clusters;
   bool is_infeasible = false;              ///< the group that was solved last: no velocities keep its contacts apart
   const SolverThreads* threads = nullptr;  ///< for large groups; nullptr: only the one that calls
+  const Vector3* centres = nullptr;        ///< of each active body, m, W; nullptr: large groups are not cut
 };
 
 struct ClusterScratch {

@@ -10,13 +10,19 @@ namespace {
 
 /// Sweeps go on for as long as two of them leave less than `slow` of the change before, else Newton's method takes
 /// over. Small islands get more of them: they cost less than a linear system, and share the load of flat faces more
-/// evenly.
+/// evenly. Of islands that are likely to be swept with momentum anyway, most of all rows would be unsolved still.
 struct Patience {
   int least;
   double slow;
 };
 constexpr std::ptrdiff_t kSmallIsland = 256;  ///< rows
-constexpr Patience kSmall{6, 0.8}, kLarge{3, 0.3};
+constexpr Patience kSmall{6, 0.8}, kLarge{3, 0.3}, kHeap{1, 0.3};
+
+Patience patience_with(std::ptrdiff_t rows) {
+  if (rows <= kSmallIsland) return kSmall;
+  return rows < kSharedGroup ? kLarge : kHeap;
+}
+
 constexpr int kMostSweeps = 20;  ///< before Newton's method
 
 /// Impulses of a sliding contact: the normal law, then the tangential law for its answer. The visits of later sweeps do
@@ -125,7 +131,7 @@ void finish_row(Row& row) noexcept {
 
 SolveResult solve_rows(const StepSettings& settings, const Residuals& residuals, Row* first, Row* end, double* u,
                        NewtonScratch& newton) noexcept {
-  const Patience patience = end - first <= kSmallIsland ? kSmall : kLarge;
+  const Patience patience = patience_with(end - first);
   bool is_newton_done = false;
   double changes[2] = {};                                        // of the last two sweeps
   apply_impulses(first, end, u, pool_of(newton.group.threads));  // warm start

@@ -31,8 +31,9 @@ constexpr int kCyclesWithoutClusters = 1;  ///< generalized steps where more tha
 constexpr int kLargeGroup = 400;   ///< rows
 constexpr int kFirstSweeps = 120;  ///< with momentum, in place of generalized steps
 /// Sweeps for each row of the group, where these are more: large heaps are deep, and Newton's method on what too few
-/// sweeps leave takes long (docs/decisions/0146).
+/// sweeps leave takes long (docs/decisions/0146). Beyond the most, contacts that slide only swing (0148).
 constexpr double kSweepsPerRow = 0.03;
+constexpr int kMostFirstSweeps = 320;
 constexpr double kFewUnsolved = 0.01;   ///< of its rows: then these sweeps end, since clusters are quicker
 constexpr int kSweepsAround = 12;       ///< after clusters
 constexpr double kMostClustered = 0.5;  ///< of the rows, in any case
@@ -139,10 +140,11 @@ class GroupProblem {
   /// Whether factors of the whole cost more than many sweeps.
   [[nodiscard]] bool is_large() const { return work_.clusters != nullptr && end_ - first_ >= kLargeGroup; }
   [[nodiscard]] int first_sweeps() const {
-    return std::max(kFirstSweeps, static_cast<int>(kSweepsPerRow * static_cast<double>(row_count())));
+    return std::clamp(static_cast<int>(kSweepsPerRow * static_cast<double>(row_count())), kFirstSweeps,
+                      kMostFirstSweeps);
   }
-  /// Whether it is swept in halves, by any number of threads.
-  [[nodiscard]] bool is_cut() const { return end_ - first_ >= kSharedGroup; }
+  /// Large groups are swept in halves, by any number of threads.
+  [[nodiscard]] const Vector3* centres() const { return end_ - first_ >= kSharedGroup ? work_.centres : nullptr; }
   [[nodiscard]] WorkerPool* pool() const { return pool_of(threads_); }
   [[nodiscard]] bool find_clusters(const ClusterSearch& search, double most, int& rings);
   void solve_clusters();
@@ -320,8 +322,9 @@ bool GroupProblem::run_packed_sweeps(int count, double few) {
   if (packed_rows_ < 0) return false;
   if (packed_rows_ != end_ - first_ || packing_ != steps_.packings) {
     packing_ = ++steps_.packings;
-    packed_rows_ = steps_.packed->pack(first_, work_.system.patches(), bodies(), is_cut(), pool()) ? end_ - first_ : -1;
-    if (packed_rows_ < 0) return false;
+    const bool is_packed = steps_.packed->pack(first_, work_.system.patches(), bodies(), centres(), pool());
+    packed_rows_ = is_packed ? end_ - first_ : -1;
+    if (!is_packed) return false;
   }
   (void)steps_.packed->run(first_, u_, {count, kMostMomentum, within_reach(), few}, pool());
   return true;

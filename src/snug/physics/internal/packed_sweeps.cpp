@@ -76,17 +76,18 @@ int count_sharing(const Row* first, int count) {
 
 }  // namespace
 
+PackedSweeps::Part::Part(std::size_t rows) : half_blocks(rows), open(kMostOpen + 1), chunks(rows), blocks(rows) {}
+
+void PackedSweeps::Part::clear() { half_blocks.clear(), open.clear(), chunks.clear(), blocks.clear(); }
+
 PackedSweeps::PackedSweeps(std::size_t bodies, std::size_t rows)
-    : halves_(bodies, rows),
+    : halves_(bodies),
+      parts_{Part(rows), Part(rows), Part(rows)},
       place_(bodies),
       velocities_(bodies + 2),
       old_velocities_(bodies + 2),
-      half_blocks_(rows),
-      blocks_(rows),
       points_(rows / kWorstUse + kMostPoints),
-      linear_(points_.capacity()),
-      chunks_(rows),
-      open_(kMostOpen + 1) {}
+      linear_(points_.capacity()) {}
 
 bool PackedSweeps::HalfBlock::has(std::int32_t body) const {
   bool found = false;
@@ -99,121 +100,136 @@ bool PackedSweeps::HalfBlock::is_like(std::int32_t rows, bool own_axes) const {
 }
 
 /// Into the oldest half block with room that has about as many rows in a lane and none of its bodies.
-void PackedSweeps::add_chunk(Chunk chunk, int a, int b) {
-  std::size_t open = 0;
+void PackedSweeps::Part::add_chunk(Chunk chunk, int a, int b) {
+  std::size_t place = 0;
   const auto takes = [&](const HalfBlock& half) {
     return half.is_like(chunk.count, chunk.has_own_axes) && !half.has(a) && !half.has(b);
   };
-  while (open < open_.size() && !takes(half_blocks_[at(open_[open])])) ++open;
+  while (place < open.size() && !takes(half_blocks[at(open[place])])) ++place;
   const auto close = [&](std::size_t i) {
-    std::copy(open_.begin() + i + 1, open_.end(), open_.begin() + i);
-    open_.resize(open_.size() - 1);
+    std::copy(open.begin() + i + 1, open.end(), open.begin() + i);
+    open.resize(open.size() - 1);
   };
-  if (open == open_.size()) {
-    if (open == kMostOpen) close(0);
-    open_.push_back(static_cast<std::int32_t>(half_blocks_.size()));
-    HalfBlock& added = half_blocks_.push_back({});
+  if (place == open.size()) {
+    if (place == kMostOpen) close(0);
+    open.push_back(static_cast<std::int32_t>(half_blocks.size()));
+    HalfBlock& added = half_blocks.push_back({});
     added.count = chunk.count, added.has_own_axes = chunk.has_own_axes;
-    open = open_.size() - 1;
+    place = open.size() - 1;
   }
-  chunk.block = open_[open];
-  HalfBlock& half = half_blocks_[at(chunk.block)];
+  chunk.block = open[place];
+  HalfBlock& half = half_blocks[at(chunk.block)];
   chunk.lane = half.lanes++;
   half.a[chunk.lane] = a, half.b[chunk.lane] = b;
   half.count = std::max(half.count, chunk.count);
-  if (half.lanes == kHalf) close(open);
-  chunks_.push_back(chunk);
+  if (half.lanes == kHalf) close(place);
+  chunks.push_back(chunk);
 }
 
 /// Two half blocks that share no body to one block, the nearest first. (Sixteen patches at once would leave more lanes
 /// empty.)
-void PackedSweeps::join_half_blocks() {
+void PackedSweeps::Part::join_half_blocks() {
   const auto add = [&](HalfBlock& half, int place) {
-    LaneBlock& block = blocks_.back();
+    LaneBlock& block = blocks.back();
     for (int i = 0; i < kHalf; ++i) {
       block.a[place * kHalf + i] = kNumbers * half.a[i];
       block.b[place * kHalf + i] = kNumbers * half.b[i];
     }
     block.count = std::max(block.count, half.count);
-    half.joined = static_cast<std::int32_t>(2 * (blocks_.size() - 1)) + place;
+    half.joined = static_cast<std::int32_t>(2 * (blocks.size() - 1)) + place;
   };
-  for (HalfBlock* half = half_blocks_.begin(); half != half_blocks_.end(); ++half) {
+  for (HalfBlock* half = half_blocks.begin(); half != half_blocks.end(); ++half) {
     if (half->joined >= 0) continue;
-    blocks_.push_back({}).linear = half->has_own_axes ? 0 : -1;
+    blocks.push_back({}).linear = half->has_own_axes ? 0 : -1;
     add(*half, 0);
     const auto fits = [&](const HalfBlock& other) {
       const auto has = [&](std::int32_t body) { return other.has(body); };
       return other.joined < 0 && other.is_like(half->count, half->has_own_axes) &&
              std::none_of(half->a, half->a + kHalf, has) && std::none_of(half->b, half->b + kHalf, has);
     };
-    HalfBlock* end = half + std::min(half_blocks_.end() - half, kNear);
+    HalfBlock* end = half + std::min(half_blocks.end() - half, kNear);
     HalfBlock* other = std::find_if(half + 1, end, fits);
     if (other < end) add(*other, 1);
   }
+  for (Chunk& chunk : chunks) {
+    const std::int32_t joined = half_blocks[at(chunk.block)].joined;
+    chunk.block = joined / 2;
+    chunk.lane += joined % 2 * kHalf;
+  }
+}
+
+BodyHalves::Part PackedSweeps::part_of(const RowPatch& patch) const {
+  return is_cut_ ? halves_.of(patch.ia, patch.ib) : BodyHalves::First;
+}
+
+void PackedSweeps::cut(std::span<const RowPatch> patches, std::span<const int> bodies, const Vector3* centres) {
+  is_cut_ = centres != nullptr;
+  if (!is_cut_) return;
+  halves_.begin(bodies, centres);
+  for (const RowPatch& patch : patches) halves_.add(patch.ia, patch.ib, patch.count);
+  halves_.cut();
 }
 
 /// The bodies of a half stand behind each other. What does not move has a place in each half, before the first and
 /// behind the last body, so that threads do not write to the same.
-void PackedSweeps::place_bodies(std::span<const int> bodies, bool is_cut) {
+void PackedSweeps::place_bodies(std::span<const int> bodies) {
   std::int32_t place = 0;
-  for (const auto half : {GroupHalves::First, GroupHalves::Second}) {
+  for (const auto half : {BodyHalves::First, BodyHalves::Second}) {
     for (const int body : bodies) {
-      if ((is_cut ? halves_.of(body) : GroupHalves::First) == half) place_[at(body)] = ++place;
+      if (part_of(body) == half) place_[at(body)] = ++place;
     }
     parts_[half].end_place = at(place) + 1;
   }
-  Part& second = parts_[GroupHalves::Second];
-  second.first_place = parts_[GroupHalves::First].end_place;
+  Part& second = parts_[BodyHalves::Second];
+  second.first_place = parts_[BodyHalves::First].end_place;
   ++second.end_place;
   velocities_.resize(second.end_place);
   old_velocities_.resize(second.end_place);
 }
 
-void PackedSweeps::add_part(GroupHalves::Part which, const Row* rows, std::span<const RowPatch> patches, bool is_cut) {
+void PackedSweeps::add_patches(BodyHalves::Part which, const Row* rows, std::span<const RowPatch> patches) {
   Part& part = parts_[at(which)];
-  part.first_block = blocks_.size();
-  const std::size_t first_chunk = chunks_.size();
-  open_.clear(), half_blocks_.clear();
+  part.clear();
   for (const RowPatch& patch : patches) {
-    if ((is_cut ? halves_.of(patch) : GroupHalves::First) != which) continue;
+    if (part_of(patch) != which) continue;
     const int a = patch.ia >= 0 ? place_[at(patch.ia)] : 0, b = patch.ib >= 0 ? place_[at(patch.ib)] : 0;
     for (int i = 0; i < patch.count;) {
       const int row = patch.first + i, most = std::min(kMostPoints, patch.count - i);
       const int sharing = count_sharing(rows + row, most);
-      add_chunk({row, sharing > 0 ? sharing : most, 0, 0, sharing == 0}, a, b);
-      i += chunks_.back().count;
+      const int count = sharing > 0 ? sharing : most;
+      part.add_chunk({row, count, 0, 0, sharing == 0}, a, b);
+      i += count;
     }
-    row_count_ += patch.count;
   }
-  join_half_blocks();
-  for (std::size_t i = first_chunk; i < chunks_.size(); ++i) {
-    const std::int32_t joined = half_blocks_[at(chunks_[i].block)].joined;
-    chunks_[i].block = joined / 2;
-    chunks_[i].lane += joined % 2 * kHalf;
-  }
-  part.end_block = blocks_.size();
-  if (which != GroupHalves::Second) return;
+  part.join_half_blocks();
+  if (which != BodyHalves::Second) return;
   const auto fixed = kNumbers * static_cast<std::int32_t>(part.end_place - 1);
-  for (std::size_t i = part.first_block; i < part.end_block; ++i) {
-    std::replace(blocks_[i].a, blocks_[i].a + kLanes, 0, fixed);
-    std::replace(blocks_[i].b, blocks_[i].b + kLanes, 0, fixed);
+  for (LaneBlock& block : part.blocks) {
+    std::replace(block.a, block.a + kLanes, 0, fixed);
+    std::replace(block.b, block.b + kLanes, 0, fixed);
   }
 }
 
-bool PackedSweeps::pack(const Row* rows, std::span<const RowPatch> patches, std::span<const int> bodies, bool is_cut,
-                        WorkerPool* pool) {
-  if (is_cut) halves_.cut(patches, bodies);
-  place_bodies(bodies, is_cut);
-  blocks_.clear(), chunks_.clear();
-  row_count_ = 0;
-  for (const auto part : {GroupHalves::First, GroupHalves::Second, GroupHalves::Seam}) {
-    add_part(part, rows, patches, is_cut);
-  }
+/// Calls job(part, worker), on several threads where there is a cut.
+template <class Job>
+void PackedSweeps::each_part(WorkerPool* pool, const Job& job) {
+  if (is_cut_ && pool != nullptr) return pool->run(3, job);
+  for (const auto part : {BodyHalves::First, BodyHalves::Second, BodyHalves::Seam}) job(part, 0);
+}
+
+bool PackedSweeps::pack(const Row* rows, std::span<const RowPatch> patches, std::span<const int> bodies,
+                        const Vector3* centres, WorkerPool* pool) {
+  cut(patches, bodies, centres);
+  place_bodies(bodies);
+  each_part(pool, [&](int part, int) { add_patches(static_cast<BodyHalves::Part>(part), rows, patches); });
+  row_count_ = patches.back().first + patches.back().count;
   std::int32_t count = 0, linear = 0;
-  for (LaneBlock& block : blocks_) {
-    block.first = count;
-    count += block.count;
-    if (block.linear >= 0) block.linear = std::exchange(linear, linear + block.count);
+  for (Part& part : parts_) {
+    for (LaneBlock& block : part.blocks) {
+      block.first = count;
+      count += block.count;
+      if (block.linear >= 0) block.linear = std::exchange(linear, linear + block.count);
+    }
   }
   if (count > row_count_ / kWorstUse + kMostPoints) return false;
   points_.resize(at(count));
@@ -222,11 +238,12 @@ bool PackedSweeps::pack(const Row* rows, std::span<const RowPatch> patches, std:
   return true;
 }
 
-/// Calls visit(chunk, its block), on several threads where there are many.
+/// Calls visit(chunk, its block); the parts on several threads.
 template <class Visit>
 void PackedSweeps::each_chunk(WorkerPool* pool, const Visit& visit) {
-  for_ranges(pool, chunks_.size(), [&](std::size_t first, std::size_t end) {
-    for (std::size_t k = first; k < end; ++k) visit(chunks_[k], blocks_[at(chunks_[k].block)]);
+  each_part(pool, [&](int index, int) {
+    Part& part = parts_[at(index)];
+    for (const Chunk& chunk : part.chunks) visit(chunk, part.blocks[at(chunk.block)]);
   });
 }
 
@@ -324,14 +341,9 @@ int PackedSweeps::run(Row* rows, const double* u, const Effort& effort, WorkerPo
     const Part& part = parts_[at(index)];
     take_momentum(part, momentum);
     changes[at(index)] = {};
-    if (part.first_block == part.end_block) return;
-    const LaneSweep of_part{blocks_.begin() + part.first_block,
-                            blocks_.begin() + part.end_block,
-                            points_.begin(),
-                            linear_.begin(),
-                            velocities_.begin()->data(),
-                            momentum,
-                            wanted};
+    if (part.blocks.empty()) return;
+    const LaneSweep of_part{part.blocks.begin(),         part.blocks.end(), points_.begin(), linear_.begin(),
+                            velocities_.begin()->data(), momentum,          wanted};
     kernel(of_part, changes[at(index)]);
   };
   double t = 1.0;

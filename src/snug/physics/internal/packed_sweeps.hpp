@@ -10,8 +10,8 @@
 
 #include "snug/core/bounded_vector.hpp"
 #include "snug/core/worker_pool.hpp"
+#include "snug/physics/internal/body_halves.hpp"
 #include "snug/physics/internal/contact_row.hpp"
-#include "snug/physics/internal/group_halves.hpp"
 #include "snug/physics/internal/lane_sweep.hpp"
 
 namespace snug::physics::internal {
@@ -35,10 +35,10 @@ class PackedSweeps {
 
   PackedSweeps(std::size_t bodies, std::size_t rows);
 
-  /// Takes in the rows of a group; they stay until the next call. `is_cut`: in halves, else as one. `pool`: threads to
-  /// use, or nullptr. False: too many share a body to go side by side.
+  /// Takes in the rows of a group; they stay until the next call. `centres`: of each active body, m, W, to go in
+  /// halves; nullptr: as one. `pool`: threads to use, or nullptr. False: too many share a body to go side by side.
   [[nodiscard]] bool pack(const Row* rows, std::span<const RowPatch> patches, std::span<const int> bodies,
-                          bool is_cut = false, WorkerPool* pool = nullptr);
+                          const Vector3* centres = nullptr, WorkerPool* pool = nullptr);
   /// Forward sweeps with Nesterov's momentum from the impulses of the packed rows and their velocities u. Leaves the
   /// impulses in the rows. Returns the number of sweeps.
   int run(Row* rows, const double* u, const Effort& effort, WorkerPool* pool = nullptr);
@@ -65,33 +65,42 @@ class PackedSweeps {
   };
   /// What is swept on one thread: its blocks, and the places of its bodies.
   struct Part {
-    std::size_t first_block = 0, end_block = 0;
+    explicit Part(std::size_t rows);
+
+    void clear();
+    void add_chunk(Chunk chunk, int a, int b);
+    void join_half_blocks();
+
+    BoundedVector<HalfBlock> half_blocks;
+    BoundedVector<std::int32_t> open;  ///< half blocks with room for more
+    BoundedVector<Chunk> chunks;
+    BoundedVector<LaneBlock> blocks;
     std::size_t first_place = 0, end_place = 0;
   };
-  void place_bodies(std::span<const int> bodies, bool is_cut);
-  void add_part(GroupHalves::Part part, const Row* rows, std::span<const RowPatch> patches, bool is_cut);
-  void add_chunk(Chunk chunk, int a, int b);
-  void join_half_blocks();
+  [[nodiscard]] BodyHalves::Part part_of(int body) const { return is_cut_ ? halves_.of(body) : BodyHalves::First; }
+  [[nodiscard]] BodyHalves::Part part_of(const RowPatch& patch) const;
+  void cut(std::span<const RowPatch> patches, std::span<const int> bodies, const Vector3* centres);
+  void place_bodies(std::span<const int> bodies);
+  void add_patches(BodyHalves::Part part, const Row* rows, std::span<const RowPatch> patches);
   void fill(const Row* rows, WorkerPool* pool);
   void fill_linear(const Row* first, const Chunk& chunk, LaneBlock& block);
   void begin(const Row* rows, const double* u, WorkerPool* pool);
   void take_momentum(const Part& part, float momentum);
+  template <class Job>
+  void each_part(WorkerPool* pool, const Job& job);
   template <class Visit>
   void each_chunk(WorkerPool* pool, const Visit& visit);
   template <class Visit>
   void each_row(WorkerPool* pool, const Visit& visit);
 
-  GroupHalves halves_;
+  BodyHalves halves_;
+  bool is_cut_ = false;
   std::array<Part, 3> parts_;              ///< two halves, of which the second may be empty; the seam
   std::vector<std::int32_t> place_;        ///< of each active body, from 1 on
   BoundedVector<Numbers> velocities_;      ///< of each place; the last two numbers are none
   BoundedVector<Numbers> old_velocities_;  ///< before the last sweep
-  BoundedVector<HalfBlock> half_blocks_;   ///< of a part
-  BoundedVector<LaneBlock> blocks_;
   BoundedVector<LanePoints> points_;
   BoundedVector<LaneLinear> linear_;
-  BoundedVector<Chunk> chunks_;
-  BoundedVector<std::int32_t> open_;  ///< half blocks with room for more
   int row_count_ = 0;
 };
 

@@ -15,7 +15,12 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 RowClusters::RowClusters(std::size_t bodies, std::size_t rows)
-    : ring_(bodies, -1), parent_(bodies), cluster_(bodies), copies_(new Row[rows]), source_(new int[rows]) {
+    : bearings_(new Bearing[rows]),
+      ring_(bodies, -1),
+      parent_(bodies),
+      cluster_(bodies),
+      copies_(new Row[rows]),
+      source_(new int[rows]) {
   ends_.reserve(bodies);
   bearing_.reserve(rows);
 }
@@ -37,24 +42,33 @@ int RowClusters::root_of(int body) {
   return body;
 }
 
+RowClusters::Bearing RowClusters::bearing_of(const RowPatch& patch, const Row* rows, const NewtonRow* newton,
+                                             double residual) {
+  Bearing bearing = Bearing::None;
+  for (int i = patch.first; i < patch.first + patch.count; ++i) {
+    if (newton[i].residual > residual) return Bearing::Unsolved;
+    if (rows[i].lambda[0] > 0.0 || newton[i].residual > 0.0) bearing = Bearing::Solved;
+  }
+  return bearing;
+}
+
 /// Patches that bear or are unsolved; the bodies of the unsolved make ring 0.
 void RowClusters::mark_unsolved(const Row* rows, const NewtonRow* newton, std::span<const RowPatch> patches,
-                                double residual) {
-  bearing_.clear();
+                                double residual, WorkerPool* pool) {
+  for_ranges(pool, patches.size(), [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) bearings_[i] = bearing_of(patches[i], rows, newton, residual);
+  });
   for (const RowPatch& patch : patches) {
     for (const int body : {patch.ia, patch.ib}) {
       if (body >= 0) ring_[at(body)] = -1, parent_[at(body)] = body, cluster_[at(body)] = -1;
     }
   }
-  for (const RowPatch& patch : patches) {
-    bool bears = false, is_unsolved = false;
-    for (int i = patch.first; i < patch.first + patch.count; ++i) {
-      bears |= rows[i].lambda[0] > 0.0 || newton[i].residual > 0.0;
-      is_unsolved |= newton[i].residual > residual;
-    }
-    if (bears) bearing_.push_back(&patch);
-    if (!is_unsolved) continue;
-    for (const int body : {patch.ia, patch.ib}) {
+  bearing_.clear();
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    if (bearings_[i] == Bearing::None) continue;
+    bearing_.push_back(&patches[i]);
+    if (bearings_[i] == Bearing::Solved) continue;
+    for (const int body : {patches[i].ia, patches[i].ib}) {
       if (body >= 0) ring_[at(body)] = 0;
     }
   }
@@ -111,7 +125,7 @@ void RowClusters::copy_rows(const Row* rows, WorkerPool* pool) {
 
 bool RowClusters::find(const Row* rows, const NewtonRow* newton, std::span<const RowPatch> patches, double residual,
                        int rings, const Limits& most, WorkerPool* pool) {
-  mark_unsolved(rows, newton, patches, residual);
+  mark_unsolved(rows, newton, patches, residual, pool);
   for (int ring = 1; ring <= rings; ++ring) add_ring(ring);
   const RowPatch& last = patches.back();
   if (static_cast<double>(join()) > most.all * (last.first + last.count)) return false;

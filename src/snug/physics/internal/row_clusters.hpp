@@ -38,14 +38,20 @@ class RowClusters {
   void put_back(Row* rows) const;
 
  private:
+  enum class Bearing : char { None, Solved, Unsolved };
+
   [[nodiscard]] int root_of(int body);
-  void mark_unsolved(const Row* rows, const NewtonRow* newton, std::span<const RowPatch> patches, double residual);
+  [[nodiscard]] static Bearing bearing_of(const RowPatch& patch, const Row* rows, const NewtonRow* newton,
+                                          double residual);
+  void mark_unsolved(const Row* rows, const NewtonRow* newton, std::span<const RowPatch> patches, double residual,
+                     WorkerPool* pool);
   void add_ring(int ring);
   [[nodiscard]] std::size_t join();
   [[nodiscard]] int& cluster_of(const RowPatch& patch);
   void count_rows();
   void copy_rows(const Row* rows, WorkerPool* pool);
 
+  std::unique_ptr<Bearing[]> bearings_;   ///< of each patch
   std::vector<const RowPatch*> bearing_;  ///< open ones join nothing and are left out
   std::vector<int> ring_;                 ///< of each body: the ring that took it, or -1
   std::vector<int> parent_;               ///< union-find over bodies

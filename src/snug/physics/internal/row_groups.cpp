@@ -18,6 +18,7 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 RowGroups::RowGroups(std::size_t bodies, std::size_t rows)
     : state_(new State[rows]),
+      between_(new Bodies[rows]),
       miss_(new double[rows]),
       parent_(bodies),
       group_(bodies),
@@ -25,6 +26,7 @@ RowGroups::RowGroups(std::size_t bodies, std::size_t rows)
       order_(new int[rows]) {
   bodies_.reserve(bodies);
   groups_.reserve(bodies);
+  runs_.reserve(rows);
 }
 
 int RowGroups::root_of(int body) {
@@ -35,11 +37,19 @@ int RowGroups::root_of(int body) {
   return body;
 }
 
-void RowGroups::begin_bodies(const Row* first, const Row* end) {
+/// And the bodies of the island, in the order of their first row.
+void RowGroups::list_runs() {
   ++search_;
-  bodies_.clear();
-  for (const Row* row = first; row != end; ++row) {
-    for (const int body : {row->ia, row->ib}) {
+  bodies_.clear(), runs_.clear();
+  for (std::size_t i = 0; i < row_count_; ++i) {
+    const std::size_t bearing = state_[i] == State::Bears ? 1 : 0;
+    if (!runs_.empty() && runs_.back().bodies == between_[i]) {
+      runs_.back().end = i + 1;
+      runs_.back().bearing += bearing;
+      continue;
+    }
+    runs_.push_back({between_[i], i, i + 1, bearing});
+    for (const int body : {between_[i].a, between_[i].b}) {
       if (body < 0 || seen_in_[at(body)] == search_) continue;
       seen_in_[at(body)] = search_;
       parent_[at(body)] = body, group_[at(body)] = kNone;
@@ -48,10 +58,33 @@ void RowGroups::begin_bodies(const Row* first, const Row* end) {
   }
 }
 
+/// Returns the largest miss.
+double RowGroups::join_bodies(double residual) {
+  double worst = 0.0;
+  for (const Run& run : runs_) {
+    if (run.bearing == 0) continue;
+    const auto [a, b] = run.bodies;
+    int root = root_of(std::max(a, b));
+    if (a >= 0 && b >= 0) {
+      const int other = root_of(std::min(a, b));
+      if (group_[at(other)] == kUnsolved || group_[at(root)] == kUnsolved) {
+        group_[at(other)] = group_[at(root)] = kUnsolved;
+      }
+      parent_[at(std::max(root, other))] = std::min(root, other);
+      root = std::min(root, other);
+    }
+    const double miss = *std::max_element(miss_.get() + run.first, miss_.get() + run.end);
+    worst = std::max(worst, miss);
+    if (miss > residual) group_[at(root)] = kUnsolved;
+  }
+  return worst;
+}
+
 void RowGroups::measure(const double* u, WorkerPool* pool) {
   for_ranges(pool, row_count_, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Row& row = first_[i];
+      between_[i] = {row.ia, row.ib};
       const bool is_open = stays_open(row, u);
       state_[i] = is_open && relative_velocity(row, 0, u) >= row.target + kIdleSpeed ? State::Idle : State::Bears;
       miss_[i] = 0.0;
@@ -66,44 +99,27 @@ void RowGroups::measure(const double* u, WorkerPool* pool) {
 double RowGroups::find(Row* first, Row* end, const double* u, double residual, WorkerPool* pool) {
   first_ = first;
   row_count_ = static_cast<std::size_t>(end - first);
-  begin_bodies(first, end);
   measure(u, pool);
-  double worst = 0.0;
-  for (std::size_t i = 0; i < row_count_; ++i) {
-    if (state_[i] == State::Idle) continue;
-    const Row& row = first[i];
-    int root = root_of(std::max(row.ia, row.ib));
-    if (row.ia >= 0 && row.ib >= 0) {
-      const int other = root_of(std::min(row.ia, row.ib));
-      if (group_[at(other)] == kUnsolved || group_[at(root)] == kUnsolved) {
-        group_[at(other)] = group_[at(root)] = kUnsolved;
-      }
-      parent_[at(std::max(root, other))] = std::min(root, other);
-      root = std::min(root, other);
-    }
-    worst = std::max(worst, miss_[i]);
-    if (miss_[i] > residual) group_[at(root)] = kUnsolved;
-  }
+  list_runs();
+  const double worst = join_bodies(residual);
   number_groups();
   return worst;
 }
 
-int RowGroups::group_of(const Row& row) const {
-  const int a = row.ia >= 0 ? group_[at(row.ia)] : kNone;
-  const int b = row.ib >= 0 ? group_[at(row.ib)] : kNone;
-  if (row.ia < 0) return b;
-  return row.ib < 0 || a == b ? a : kNone;  // between two groups: of none
+int RowGroups::group_of(const Bodies& bodies) const {
+  const int a = bodies.a >= 0 ? group_[at(bodies.a)] : kNone;
+  const int b = bodies.b >= 0 ? group_[at(bodies.b)] : kNone;
+  if (bodies.a < 0) return b;
+  return bodies.b < 0 || a == b ? a : kNone;  // between two groups: of none
 }
 
 /// Groups in the order of their first rows, and the rows of each.
 void RowGroups::number_groups() {
   groups_.clear();
-  for (std::size_t i = 0; i < row_count_; ++i) {
-    if (state_[i] == State::Idle) continue;
-    int& group = group_[at(root_of(std::max(first_[i].ia, first_[i].ib)))];
-    if (group == kNone) continue;
+  for (const Run& run : runs_) {
+    if (run.bearing == 0) continue;
+    int& group = group_[at(root_of(std::max(run.bodies.a, run.bodies.b)))];
     if (group == kUnsolved) group = static_cast<int>(groups_.size()), groups_.push_back({});
-    ++groups_[at(group)].rows;
   }
   for (const int body : bodies_) {
     if (parent_[at(body)] != body) group_[at(body)] = group_[at(root_of(body))];
@@ -112,32 +128,39 @@ void RowGroups::number_groups() {
 }
 
 void RowGroups::sort_rows() {
-  for (std::size_t i = 0; i < row_count_; ++i) {
-    const int group = state_[i] == State::Idle ? group_of(first_[i]) : kNone;
-    if (group >= 0) ++groups_[at(group)].idle;
+  for (const Run& run : runs_) {
+    const int group = group_of(run.bodies);
+    if (group < 0) continue;
+    groups_[at(group)].rows += run.bearing;
+    groups_[at(group)].idle += run.end - run.first - run.bearing;
   }
   std::size_t begin = 0;
   for (Group& group : groups_) {
-    group.end = begin;  // of its rows so far, until all are there
-    begin += group.rows + group.idle;
+    group.next = begin;
+    group.next_idle = begin + group.rows;
+    group.end = begin = group.next_idle + group.idle;
   }
-  for (const State state : {State::Bears, State::Idle}) {
-    for (std::size_t i = 0; i < row_count_; ++i) {
-      if (state_[i] != state) continue;
-      const int group = group_of(first_[i]);
-      if (group >= 0) order_[groups_[at(group)].end++] = static_cast<int>(i);
+  for (const Run& run : runs_) {
+    const int index = group_of(run.bodies);
+    if (index < 0) continue;
+    Group& group = groups_[at(index)];
+    for (std::size_t i = run.first; i < run.end; ++i) {
+      order_[state_[i] == State::Bears ? group.next++ : group.next_idle++] = static_cast<int>(i);
     }
   }
 }
 
 OpenGroup::OpenGroup(std::size_t rows) : copies_(new Row[rows]), source_(new int[rows]), idle_(new IdleRow[rows]) {}
 
-void OpenGroup::add_idle(const Row& row, int index) {
-  IdleRow& idle = idle_[idle_count_++];
-  idle.least = row.target - row.bias[0];
-  idle.ia = row.ia;
-  idle.ib = row.ib;
-  idle.row = index;
+/// `rows`: of the island.
+void OpenGroup::list_idle(const int* rows, std::size_t count, WorkerPool* pool) {
+  idle_count_ = count;
+  for_ranges(pool, count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Row& row = first_[rows[i]];
+      idle_[i] = {row.target - row.bias[0], row.ia, row.ib, rows[i], false};
+    }
+  });
 }
 
 std::span<Row> OpenGroup::open(const RowGroups& groups, std::size_t group, WorkerPool* pool) {
@@ -156,7 +179,7 @@ std::span<Row> OpenGroup::open(const RowGroups& groups, std::size_t group, Worke
       source_[i] = order[i];
     }
   });
-  for (std::size_t i = open.rows; i < open.rows + open.idle; ++i) add_idle(first_[order[i]], order[i]);
+  list_idle(order + open.rows, open.idle, pool);
   return {copies_.get(), copy_count_};
 }
 

@@ -29,21 +29,35 @@ class RowGroups {
  private:
   friend class OpenGroup;
   enum class State : char { Idle, Bears };
+  struct Bodies {
+    std::int32_t a, b;  ///< active, or -1
+    bool operator==(const Bodies&) const = default;
+  };
+  /// Rows behind each other with the same bodies.
+  struct Run {
+    Bodies bodies;
+    std::size_t first, end;
+    std::size_t bearing;  ///< rows that are not idle
+  };
   struct Group {
     std::size_t rows = 0, end = 0;  ///< in order_: those that bear come first
     std::size_t idle = 0;
+    std::size_t next = 0, next_idle = 0;  ///< places in order_, while it is filled
   };
 
   [[nodiscard]] int root_of(int body);
-  void begin_bodies(const Row* first, const Row* end);
   void measure(const double* u, WorkerPool* pool);
+  void list_runs();
+  double join_bodies(double residual);
   void number_groups();
   void sort_rows();
-  [[nodiscard]] int group_of(const Row& row) const;
+  [[nodiscard]] int group_of(const Bodies& bodies) const;
 
   Row* first_ = nullptr;  ///< of the island
   std::size_t row_count_ = 0;
   std::unique_ptr<State[]> state_;
+  std::unique_ptr<Bodies[]> between_;  ///< of each row, since rows themselves are far apart in memory
+  std::vector<Run> runs_;
   std::unique_ptr<double[]> miss_;     ///< m/s, of each row that is not idle
   std::vector<int> parent_;            ///< union-find over bodies
   std::vector<int> group_;             ///< of each root: its number, or kNone, kUnsolved; in the end of each body
@@ -79,7 +93,7 @@ class OpenGroup {
     std::int32_t row;  ///< of the island
     bool closes;
   };
-  void add_idle(const Row& row, int index);
+  void list_idle(const int* rows, std::size_t count, WorkerPool* pool);
   [[nodiscard]] bool closes(const IdleRow& idle, const double* u) const;
 
   Row* first_ = nullptr;             ///< of the island

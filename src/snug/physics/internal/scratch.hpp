@@ -176,11 +176,12 @@ struct Scratch {
   std::vector<Whitening> whitening;        ///< by active index
   BoundedVector<Matrix6> dense_whitening;  ///< by active index, where there are elements
   std::vector<Vector3>
-      last_torque;            ///< N m s, by active index: of the contacts of the step before, where that turns fast
-  std::vector<double> u;      ///< 6 per active body
-  std::vector<double> shift;  ///< 6 per active body, position correction in whitened coordinates
-  std::vector<BodyEnd> ends;  ///< of each body; of steps in which one turns fast
-  std::vector<int> parent;    ///< union-find over active bodies
+      last_torque;               ///< N m s, by active index: of the contacts of the step before, where that turns fast
+  std::vector<Vector3> centres;  ///< p_WBcm, by active index
+  std::vector<double> u;         ///< 6 per active body
+  std::vector<double> shift;     ///< 6 per active body, position correction in whitened coordinates
+  std::vector<BodyEnd> ends;     ///< of each body; of steps in which one turns fast
+  std::vector<int> parent;       ///< union-find over active bodies
   std::vector<int> island_of_root;
   BoundedVector<Patch> patches;
   BoundedVector<Contact> contacts;             ///< by patch

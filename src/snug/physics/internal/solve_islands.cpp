@@ -166,8 +166,8 @@ void solve_island(const WorldModel& model, const WorldInput& input, WorldState& 
   });
   island.is_carried = is_carried;
   worker.report.is_infeasible |= island.is_infeasible;
-  worker.positions.run(model.settings, first, end, work.contacts.begin(), work.u.data(), island.is_infeasible,
-                       work.shift.data());
+  worker.positions.run(model.settings, first, end, work.contacts.begin(), work.u.data(), work.centres.data(),
+                       island.is_infeasible, work.shift.data(), pool_of(worker.newton.group.threads));
   arrange_planes(island, false, work);
   read_velocities(work, island);
 }
@@ -327,6 +327,7 @@ void solve_islands(const WorldModel& model, const WorldInput& input, WorldState&
     for (std::size_t i = first; i < end; ++i) {
       const BodyWork& body = work.bodies[static_cast<std::size_t>(work.active[i])];
       Eigen::Map<Vector6>(work.u.data() + 6 * i) = whiten(work.whitening[i], body.velocity, body.angular);
+      work.centres[i] = body.p_WBcm;
     }
   });
   work.rows.resize(static_cast<std::size_t>(work.row_count));

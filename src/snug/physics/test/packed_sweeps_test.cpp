@@ -44,6 +44,13 @@ struct Problem {
     patches.push_back(patch);
   }
 
+  /// A row of bodies.
+  [[nodiscard]] static std::vector<Vector3> centres() {
+    std::vector<Vector3> centres;
+    for (int body = 0; body < kBodies; ++body) centres.emplace_back(body, 0.0, 0.0);
+    return centres;
+  }
+
   /// Velocities with the impulses of the rows.
   [[nodiscard]] std::vector<double> velocities() const {
     std::vector<double> u = u_free;
@@ -109,7 +116,7 @@ TEST(PackedSweeps, GiveTheSameBytesInHalvesByOneThreadAndByTwo) {
     Problem& problem = problems.back();
     WorkerPool pool(threads);
     PackedSweeps sweeps(kBodies, problem.rows.size());
-    ASSERT_TRUE(sweeps.pack(problem.rows.data(), problem.patches, problem.bodies, true, &pool));
+    ASSERT_TRUE(sweeps.pack(problem.rows.data(), problem.patches, problem.bodies, problem.centres().data(), &pool));
     const auto u = problem.velocities();
     EXPECT_LT(sweeps.run(problem.rows.data(), u.data(), {1000, 0.9, 1e-5, 0.0}, threads > 1 ? &pool : nullptr), 1000);
     EXPECT_LE(problem.residual(), 1e-5);
