@@ -94,15 +94,19 @@ int newton_rows(const Residuals& residuals, Row* first, Row* end, double* u, New
   for (int round = 0; round < kRounds; ++round) {
     const bool is_first = round == 0;
     const double enough = is_first ? residuals.wanted : residuals.accepted;
-    if (!(work.groups.find(first, end, u, enough, pool_of(work.group.threads)) > enough))
-      return iterations;  // the caller says what is not finite
+    work.residual = work.groups.find(first, end, u, enough, pool_of(work.group.threads));
+    if (!(work.residual > enough)) return iterations;  // the caller says what is not finite
     const GroupOutcome outcome = solve_groups(residuals, u, work, !is_first);
     work.is_infeasible = outcome.is_infeasible;
     iterations += outcome.iterations;
-    if (work.is_infeasible) return iterations;
+    if (work.is_infeasible) break;
   }
-  if (worst_residual(work.group.threads, first, end, u) <= residuals.accepted) return iterations;
-  return iterations + solve_group(residuals, {first, end}, u, work.group, nullptr, true);
+  const auto measure = [&] { work.residual = worst_residual(work.group.threads, first, end, u); };
+  measure();
+  if (work.is_infeasible || work.residual <= residuals.accepted) return iterations;
+  iterations += solve_group(residuals, {first, end}, u, work.group, nullptr, true);
+  measure();
+  return iterations;
 }
 
 }  // namespace snug::physics::internal

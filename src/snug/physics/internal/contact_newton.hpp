@@ -85,6 +85,7 @@ struct NewtonScratch {
   OpenGroup open_group;
   GroupScratch group;          ///< with the threads that may be used
   bool is_infeasible = false;  ///< the rows that were solved last
+  double residual = 0.0;       ///< m/s, that they were left with
   GroupOutcome side_by_side;   ///< of the groups that this thread has solved beside others
 };
 
@@ -100,7 +101,7 @@ double worst_residual(const SolverThreads* threads, const Row* first, const Row*
 /// u of all impulses added to that without, body by body in the order of the rows. `pool`: threads to use, or nullptr.
 void apply_impulses(const Row* first, const Row* end, double* u, WorkerPool* pool) noexcept;
 
-/// solve_group() for the rows of an island.
+/// solve_group() for the rows of an island. Leaves their residual in `work`.
 int newton_rows(const Residuals& residuals, Row* first, Row* end, double* u, NewtonScratch& work) noexcept;
 
 }  // namespace snug::physics::internal

@@ -155,8 +155,10 @@ SolveResult solve_rows(const StepSettings& settings, const Residuals& residuals,
       is_newton_done = true;
       result.iterations += newton_rows(residuals, first, end, u, newton);
       result.is_infeasible = newton.is_infeasible;
+      result.residual = newton.residual;
+    } else {
+      result.residual = worst_residual(newton.group.threads, first, end, u);
     }
-    result.residual = worst_residual(newton.group.threads, first, end, u);
     if (result.residual <= residuals.accepted) return result;
     if (result.is_infeasible) break;
   }

@@ -58,9 +58,7 @@ void RowGroups::list_runs() {
   }
 }
 
-/// Returns the largest miss.
-double RowGroups::join_bodies(double residual) {
-  double worst = 0.0;
+void RowGroups::join_bodies(double residual) {
   for (const Run& run : runs_) {
     if (run.bearing == 0) continue;
     const auto [a, b] = run.bodies;
@@ -74,14 +72,14 @@ double RowGroups::join_bodies(double residual) {
       root = std::min(root, other);
     }
     const double miss = *std::max_element(miss_.get() + run.first, miss_.get() + run.end);
-    worst = std::max(worst, miss);
     if (miss > residual) group_[at(root)] = kUnsolved;
   }
-  return worst;
 }
 
-void RowGroups::measure(const double* u, WorkerPool* pool) {
-  for_ranges(pool, row_count_, [&](std::size_t begin, std::size_t end) {
+/// Returns the largest miss.
+double RowGroups::measure(const double* u, WorkerPool* pool) {
+  return largest_of_ranges(pool, row_count_, [&](std::size_t begin, std::size_t end) {
+    double worst = 0.0;
     for (std::size_t i = begin; i < end; ++i) {
       const Row& row = first_[i];
       between_[i] = {row.ia, row.ib};
@@ -92,16 +90,19 @@ void RowGroups::measure(const double* u, WorkerPool* pool) {
       double xi[3];
       contact_velocity(row, u, xi);
       miss_[i] = natural_map(row, xi, row.lambda);
+      worst = std::max(worst, miss_[i]);
     }
+    return worst;
   });
 }
 
 double RowGroups::find(Row* first, Row* end, const double* u, double residual, WorkerPool* pool) {
   first_ = first;
   row_count_ = static_cast<std::size_t>(end - first);
-  measure(u, pool);
+  const double worst = measure(u, pool);
+  if (!(worst > residual)) return worst;
   list_runs();
-  const double worst = join_bodies(residual);
+  join_bodies(residual);
   number_groups();
   return worst;
 }

@@ -20,7 +20,7 @@ class RowGroups {
   RowGroups(std::size_t bodies, std::size_t rows);
 
   /// The groups in which a row misses its law by more than `residual`. `pool`: threads to use, or nullptr. Returns the
-  /// largest such miss of all rows, m/s.
+  /// largest such miss of all rows, m/s; where that is not more, groups are not looked for.
   double find(Row* first, Row* end, const double* u, double residual, WorkerPool* pool);
   [[nodiscard]] std::size_t count() const { return groups_.size(); }
   /// Of a group, without the idle.
@@ -46,9 +46,9 @@ class RowGroups {
   };
 
   [[nodiscard]] int root_of(int body);
-  void measure(const double* u, WorkerPool* pool);
+  double measure(const double* u, WorkerPool* pool);
   void list_runs();
-  double join_bodies(double residual);
+  void join_bodies(double residual);
   void number_groups();
   void sort_rows();
   [[nodiscard]] int group_of(const Bodies& bodies) const;
