@@ -49,6 +49,7 @@ constexpr ClusterSearch kSearch{20, 0, kMostClustered, false}, kSearchLarge{20, 
 /// Chosen on heaps of 3000 boxes.
 constexpr ClusterSearch kSearchVast{60, 10, 0.03, true};
 constexpr int kVastGroup = 6000;  ///< rows
+constexpr int kCalmSweeps = 30;   ///< with little momentum, of a long run in such a group
 constexpr double kMostMomentum = 0.97;
 /// Of the tolerance: large groups at rest are solved as far as sweeps in single precision go.
 constexpr double kSingleResidual = 0.1;
@@ -326,7 +327,8 @@ bool GroupProblem::run_packed_sweeps(int count, double few) {
     packed_rows_ = is_packed ? end_ - first_ : -1;
     if (!is_packed) return false;
   }
-  (void)steps_.packed->run(first_, u_, {count, kMostMomentum, within_reach(), few}, pool());
+  const int calm = count > kSweepsAround && row_count() >= kVastGroup ? kCalmSweeps : 0;
+  (void)steps_.packed->run(first_, u_, {count, kMostMomentum, within_reach(), few, kLanes, calm}, pool());
   return true;
 }
 

@@ -25,6 +25,8 @@ constexpr int kLeastSweeps = 20;  ///< before few unsolved rows end it
 /// of all before, the most momentum is taken twice as far from 1.
 constexpr float kGrown = 30.0F;
 constexpr float kLeastMomentum = 0.5F;
+/// What swings under much momentum fades under this one.
+constexpr float kCalmMomentum = 0.8F;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 double product(const double* x, const double* y) { return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]; }
@@ -373,7 +375,8 @@ int PackedSweeps::run(Row* rows, const double* u, const Effort& effort, WorkerPo
     least_error = grows || least_error < 0.0F ? error : std::min(error, least_error);
     const bool starts_anew = grows || uphill > 0.0F;
     const double next = 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * t * t));
-    momentum = starts_anew ? 0.0F : std::min(most, static_cast<float>((t - 1.0) / next));
+    const float limit = count < effort.sweeps - effort.calm ? most : std::min(most, kCalmMomentum);
+    momentum = starts_anew ? 0.0F : std::min(limit, static_cast<float>((t - 1.0) / next));
     t = starts_anew ? 1.0 : next;
   }
   each_row(pool, [&](int index, const LanePoints& p, int lane) {

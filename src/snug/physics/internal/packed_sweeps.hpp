@@ -31,6 +31,7 @@ class PackedSweeps {
     double wanted = 0.0;      ///< m/s, residual
     double few = 0.0;         ///< fraction of the rows that may miss `wanted` when sweeps end
     int most_width = kLanes;  ///< lanes of the vectors, where the processor has as many
+    int calm = 0;             ///< the last of the sweeps, with little momentum
   };
 
   PackedSweeps(std::size_t bodies, std::size_t rows);
