@@ -11,8 +11,8 @@ namespace {
 /// Waiting without sleep: to wake a thread takes as long as many a run. Long enough for what is done between the runs
 /// of one step of physics.
 constexpr std::chrono::microseconds kAwake{1000};
-/// Of it, times that the condition is asked without giving way: some 8 us. To give way takes as long as what is waited
-/// for where threads work in turn.
+/// Times that a condition is asked, some 8 us, before the thread yields for the first time: a call to yield takes about
+/// as long as a short job.
 constexpr int kAtOnce = 10000;
 
 /// Whether the condition held within kAwake. Gives way to whatever else wants the core.

@@ -127,6 +127,21 @@ TEST(PackedSweeps, GiveTheSameBytesInHalvesByOneThreadAndByTwo) {
   }
 }
 
+TEST(PackedSweeps, ThatAreCalmHaveLittleMomentum) {
+  const auto impulses_after = [](double momentum, int calm) {
+    Problem problem = drawn_problem();
+    PackedSweeps sweeps(kBodies, problem.rows.size());
+    EXPECT_TRUE(sweeps.pack(problem.rows.data(), problem.patches, problem.bodies));
+    (void)sweeps.run(problem.rows.data(), problem.velocities().data(), {40, momentum, 1e-9, 0.0, kLanes, calm});
+    std::vector<double> impulses;
+    for (const Row& row : problem.rows) impulses.insert(impulses.end(), row.lambda, row.lambda + 3);
+    return impulses;
+  };
+  EXPECT_EQ(impulses_after(0.95, 40), impulses_after(0.8, 0));
+  EXPECT_NE(impulses_after(0.95, 10), impulses_after(0.95, 0));
+  EXPECT_NE(impulses_after(0.95, 10), impulses_after(0.8, 0));
+}
+
 TEST(PackedSweeps, RefuseWhatHangsOnOneBody) {
   Problem problem;
   Rng rng = Rng(4).split("star");
