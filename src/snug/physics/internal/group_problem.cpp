@@ -1,6 +1,7 @@
 // Group problem: Newton's method on one group of rows. docs/theory/contact.md, section 4.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "snug/physics/internal/chunks.hpp"
@@ -40,14 +41,14 @@ constexpr double kMostClustered = 0.5;  ///< of the rows, in any case
 
 /// How clusters of a group are looked for. Where they would be too large, sweeps come again.
 struct ClusterSearch {
-  int rounds;          ///< parts solved, each time with one more ring of bodies around them
-  int again;           ///< times that sweeps come where clusters would be larger than `most`
-  double most;         ///< of the rows of the group
-  bool has_few_rings;  ///< only as many as keep each cluster within kLargeGroup rows
+  int rounds;        ///< parts solved, each time with one more ring of bodies around them
+  int again;         ///< times that sweeps come where clusters would be larger than `most`
+  double most;       ///< of the rows of the group
+  std::size_t each;  ///< rows of a cluster that grows; 0: rings are the same for all
 };
-constexpr ClusterSearch kSearch{20, 0, kMostClustered, false}, kSearchLarge{20, 2, 0.1, false};
+constexpr ClusterSearch kSearch{20, 0, kMostClustered, 0}, kSearchLarge{20, 2, 0.1, 0};
 /// Chosen on heaps of 3000 boxes.
-constexpr ClusterSearch kSearchVast{60, 10, 0.03, true};
+constexpr ClusterSearch kSearchVast{60, 10, 0.1, 600};
 constexpr int kVastGroup = 6000;  ///< rows
 constexpr int kCalmSweeps = 30;   ///< with little momentum, of a long run in such a group
 constexpr double kMostMomentum = 0.97;
@@ -122,9 +123,11 @@ class GroupProblem {
   [[nodiscard]] bool is_solved() const { return best_ <= tolerance_; }
   void start();
   void add_row(Row& row);
-  void wake();
+  std::size_t wake();
   void apply_impulses();
   void measure();
+  void measure_rows();
+  void measure_round();
   void keep_best();
   void restore_best();
   bool take_step();
@@ -147,7 +150,7 @@ class GroupProblem {
   /// Large groups are swept in halves, by any number of threads.
   [[nodiscard]] const Vector3* centres() const { return end_ - first_ >= kSharedGroup ? work_.centres : nullptr; }
   [[nodiscard]] WorkerPool* pool() const { return pool_of(threads_); }
-  [[nodiscard]] bool find_clusters(const ClusterSearch& search, double most, int& rings);
+  [[nodiscard]] bool find_clusters(const ClusterSearch& search, bool has_limits, int rings);
   void solve_clusters();
   void solve_each(const Residuals& residuals, ClusterScratch& clusters);
   void linearise();
@@ -196,10 +199,12 @@ void GroupProblem::start() {
   residual_ = best_ = worst_residual(threads_, first_, end_, u_);
 }
 
-/// Takes in the idle contacts that close.
-void GroupProblem::wake() {
-  if (open_group_ == nullptr) return;
-  for (std::size_t count = open_group_->wake(u_, pool()); count > 0; --count) add_row(*end_++);
+/// Takes in the idle contacts that close. Returns how many.
+std::size_t GroupProblem::wake() {
+  if (open_group_ == nullptr) return 0;
+  const std::size_t count = open_group_->wake(u_, pool());
+  for (std::size_t i = 0; i < count; ++i) add_row(*end_++);
+  return count;
 }
 
 /// u from the impulses of the rows.
@@ -209,7 +214,20 @@ void GroupProblem::apply_impulses() {
 }
 
 void GroupProblem::measure() {
-  wake();
+  (void)wake();
+  measure_rows();
+}
+
+/// Between rounds of clusters in a large group: looks at idle contacts only where all others are solved.
+void GroupProblem::measure_round() {
+  if (!is_large()) return measure();
+  measure_rows();
+  if (!is_solved() || wake() == 0) return;
+  best_ = std::numeric_limits<double>::infinity();
+  measure_rows();
+}
+
+void GroupProblem::measure_rows() {
   residual_ = largest_of_ranges(pool(), row_count(), [this](std::size_t first, std::size_t end) {
     double largest = 0.0;
     for (std::size_t i = first; i < end; ++i) {
@@ -239,7 +257,7 @@ void GroupProblem::restore_best() {
 
 /// Residuals of the present state, laws about it, and the momentum error that these leave.
 void GroupProblem::linearise() {
-  wake();
+  (void)wake();
   for (const int body : bodies()) {
     for (int k = 6 * body; k < 6 * body + 6; ++k) steps_.error[at(k)] = work_.u_free[at(k)] - u_[k];
   }
@@ -337,7 +355,7 @@ bool GroupProblem::run_packed_sweeps(int count, double few) {
 void GroupProblem::run_sweeps(int count, double few) {
   if (run_packed_sweeps(count, few)) {
     apply_impulses();
-    measure();
+    count == kSweepsAround ? measure_round() : measure();
     return;
   }
   double* before = steps_.before.get();
@@ -503,16 +521,14 @@ void GroupProblem::solve_each(const Residuals& residuals, ClusterScratch& cluste
   for (int i = 0; i < count; ++i) solve(i, 0);
 }
 
-/// With fewer rings than asked for where the search wants that.
-bool GroupProblem::find_clusters(const ClusterSearch& search, double most, int& rings) {
-  const auto find = [&](const RowClusters::Limits& limits) {
-    return work_.clusters->rows.find(first_, work_.rows.get(), work_.system.patches(), tolerance_, rings, limits,
-                                     pool());
-  };
-  for (; search.has_few_rings && rings > 0; --rings) {
-    if (find({most, kLargeGroup})) return true;
-  }
-  return find({most});
+bool GroupProblem::find_clusters(const ClusterSearch& search, bool has_limits, int rings) {
+  RowClusters& clusters = work_.clusters->rows;
+  const auto of_rows = [&](double share) { return static_cast<std::size_t>(share * static_cast<double>(row_count())); };
+  const std::size_t most = of_rows(has_limits ? search.most : kMostClustered);
+  const auto patches = work_.system.patches();
+  if (search.each == 0) return clusters.find(first_, work_.rows.get(), patches, tolerance_, rings, most, pool());
+  return clusters.find_growing(first_, work_.rows.get(), patches, tolerance_, {most, has_limits ? search.each : most},
+                               pool());
 }
 
 /// A few contacts keep changing their status while all others are solved: these are solved among themselves, then a
@@ -521,9 +537,10 @@ void GroupProblem::solve_clusters() {
   ClusterScratch& clusters = *work_.clusters;
   const Residuals residuals{kClusterResidual * tolerance_, kClusterResidual * tolerance_};
   const ClusterSearch& search = !is_large() ? kSearch : row_count() < kVastGroup ? kSearchLarge : kSearchVast;
+  clusters.rows.forget();
   int rings = is_large() ? 1 : 0, again = 0;
   for (int round = 0; round < search.rounds && !is_solved() && has_room_; ++round) {
-    if (!find_clusters(search, again < search.again ? search.most : kMostClustered, rings)) {
+    if (!find_clusters(search, again < search.again, rings)) {
       ++again;
       is_large() ? run_sweeps(first_sweeps(), kFewUnsolved) : run_cycles(kCyclesWithoutClusters);
       rings = std::max(0, rings - 1);
@@ -532,7 +549,7 @@ void GroupProblem::solve_clusters() {
     ++rings;
     solve_each(residuals, clusters);
     clusters.rows.put_back(first_);
-    measure();
+    measure_round();
     if (is_solved()) continue;
     is_large() ? run_sweeps(kSweepsAround, 0.0) : run_cycles(1);
   }

@@ -1,7 +1,8 @@
-// RowClusters: marks bodies ring by ring, groups them by union-find, copies their rows.
+// RowClusters: takes bodies ring by ring, groups them by union-find, copies their rows.
 #include "snug/physics/internal/row_clusters.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "snug/physics/internal/chunks.hpp"
@@ -10,19 +11,25 @@
 namespace snug::physics::internal {
 namespace {
 
+constexpr int kMostRings = 6;
+
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
 RowClusters::RowClusters(std::size_t bodies, std::size_t rows)
     : bearings_(new Bearing[rows]),
-      ring_(bodies, -1),
+      rings_(bodies),
+      reach_(bodies, -1),
       parent_(bodies),
       cluster_(bodies),
       copies_(new Row[rows]),
       source_(new int[rows]) {
   ends_.reserve(bodies);
+  most_rings_.reserve(bodies);
+  unsolved_.reserve(bodies);
   bearing_.reserve(rows);
+  taken_.reserve(rows);
 }
 
 std::span<Row> RowClusters::operator[](std::size_t cluster) {
@@ -52,57 +59,77 @@ RowClusters::Bearing RowClusters::bearing_of(const RowPatch& patch, const Row* r
   return bearing;
 }
 
-/// Patches that bear or are unsolved; the bodies of the unsolved make ring 0.
-void RowClusters::mark_unsolved(const Row* rows, const NewtonRow* newton, std::span<const RowPatch> patches,
+/// And the patches that bear or are unsolved.
+void RowClusters::find_unsolved(const Row* rows, const NewtonRow* newton, std::span<const RowPatch> patches,
                                 double residual, WorkerPool* pool) {
   for_ranges(pool, patches.size(), [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) bearings_[i] = bearing_of(patches[i], rows, newton, residual);
   });
+  bearing_.clear();
+  unsolved_.clear();
   for (const RowPatch& patch : patches) {
     for (const int body : {patch.ia, patch.ib}) {
-      if (body >= 0) ring_[at(body)] = -1, parent_[at(body)] = body, cluster_[at(body)] = -1;
+      if (body >= 0) reach_[at(body)] = -1;
     }
   }
-  bearing_.clear();
   for (std::size_t i = 0; i < patches.size(); ++i) {
     if (bearings_[i] == Bearing::None) continue;
     bearing_.push_back(&patches[i]);
     if (bearings_[i] == Bearing::Solved) continue;
     for (const int body : {patches[i].ia, patches[i].ib}) {
-      if (body >= 0) ring_[at(body)] = 0;
+      if (body >= 0 && std::exchange(reach_[at(body)], 0) != 0) unsolved_.push_back(body);
     }
   }
 }
 
-void RowClusters::add_ring(int ring) {
+/// Around each unsolved body as many as it has.
+void RowClusters::add_rings() {
   for (const RowPatch* patch : bearing_) {
-    const int a = patch->ia, b = patch->ib;
-    if (a < 0 || b < 0) continue;
-    if (ring_[at(a)] == ring - 1 && ring_[at(b)] < 0) ring_[at(b)] = ring;
-    if (ring_[at(b)] == ring - 1 && ring_[at(a)] < 0) ring_[at(a)] = ring;
+    for (const int body : {patch->ia, patch->ib}) {
+      if (body >= 0) reach_[at(body)] = -1, parent_[at(body)] = body, cluster_[at(body)] = -1;
+    }
+  }
+  int reach = 0;
+  for (const int body : unsolved_) {
+    reach_[at(body)] = rings_[at(body)];
+    reach = std::max(reach, rings_[at(body)]);
+  }
+  for (; reach > 0; --reach) {
+    for (const RowPatch* patch : bearing_) {
+      if (patch->ia < 0 || patch->ib < 0) continue;
+      int &a = reach_[at(patch->ia)], &b = reach_[at(patch->ib)];
+      if (a == reach) b = std::max(b, reach - 1);
+      if (b == reach) a = std::max(a, reach - 1);
+    }
   }
 }
 
-/// Patches between bodies of rings stay; such bodies get one root. Returns the number of their rows.
-std::size_t RowClusters::join() {
-  const auto has_body = [&](int body) { return body < 0 || ring_[at(body)] >= 0; };
-  std::erase_if(bearing_, [&](const RowPatch* patch) { return !has_body(patch->ia) || !has_body(patch->ib); });
-  std::size_t count = 0;
+/// Takes the patches between bodies of rings; such bodies get one root.
+void RowClusters::join() {
+  const auto has_body = [&](int body) { return body < 0 || reach_[at(body)] >= 0; };
+  taken_.clear();
   for (const RowPatch* patch : bearing_) {
-    count += at(patch->count);
+    if (!has_body(patch->ia) || !has_body(patch->ib)) continue;
+    taken_.push_back(patch);
     if (patch->ia < 0 || patch->ib < 0) continue;
     const int a = root_of(patch->ia), b = root_of(patch->ib);
     parent_[at(std::max(a, b))] = std::min(a, b);
   }
-  return count;
 }
 
 int& RowClusters::cluster_of(const RowPatch& patch) { return cluster_[at(root_of(std::max(patch.ia, patch.ib)))]; }
 
+/// Rings around the unsolved, joined to clusters; how many rows each has is in ends_.
+void RowClusters::take_bodies() {
+  add_rings();
+  join();
+  count_rows();
+}
+
 /// Of each cluster, in ends_.
 void RowClusters::count_rows() {
   ends_.clear();
-  for (const RowPatch* patch : bearing_) {
+  for (const RowPatch* patch : taken_) {
     int& cluster = cluster_of(*patch);
     if (cluster < 0) cluster = static_cast<int>(ends_.size()), ends_.push_back(0);
     ends_[at(cluster)] += at(patch->count);
@@ -113,7 +140,7 @@ void RowClusters::count_rows() {
 void RowClusters::copy_rows(const Row* rows, WorkerPool* pool) {
   std::size_t begin = 0;
   for (std::size_t& end : ends_) begin += std::exchange(end, begin);
-  for (const RowPatch* patch : bearing_) {
+  for (const RowPatch* patch : taken_) {
     std::size_t& end = ends_[at(cluster_of(*patch))];
     for (int i = patch->first; i < patch->first + patch->count; ++i, ++end) source_[end] = i;
   }
@@ -123,14 +150,57 @@ void RowClusters::copy_rows(const Row* rows, WorkerPool* pool) {
   });
 }
 
+/// From the unsolved bodies of clusters with more rows. False: none of them has any.
+bool RowClusters::take_ring(std::size_t most) {
+  bool has_taken = false;
+  for (const int body : unsolved_) {
+    int& rings = rings_[at(body)];
+    if (rings == 0 || ends_[at(cluster_[at(root_of(body))])] <= most) continue;
+    --rings;
+    has_taken = true;
+  }
+  return has_taken;
+}
+
+/// Each body of a cluster gets the most rings of one in it.
+void RowClusters::share_rings() {
+  most_rings_.assign(ends_.size(), 0);
+  for (const int body : unsolved_) {
+    int& most = most_rings_[at(cluster_[at(root_of(body))])];
+    most = std::max(most, rings_[at(body)]);
+  }
+  for (const RowPatch* patch : taken_) {
+    for (const int body : {patch->ia, patch->ib}) {
+      if (body >= 0) rings_[at(body)] = std::max(rings_[at(body)], most_rings_[at(cluster_of(*patch))]);
+    }
+  }
+}
+
 bool RowClusters::find(const Row* rows, const NewtonRow* newton, std::span<const RowPatch> patches, double residual,
-                       int rings, const Limits& most, WorkerPool* pool) {
-  mark_unsolved(rows, newton, patches, residual, pool);
-  for (int ring = 1; ring <= rings; ++ring) add_ring(ring);
-  const RowPatch& last = patches.back();
-  if (static_cast<double>(join()) > most.all * (last.first + last.count)) return false;
-  count_rows();
-  if (std::any_of(ends_.begin(), ends_.end(), [&](std::size_t count) { return count > most.each; })) return false;
+                       int rings, std::size_t most, WorkerPool* pool) {
+  find_unsolved(rows, newton, patches, residual, pool);
+  for (const int body : unsolved_) rings_[at(body)] = rings;
+  take_bodies();
+  if (std::accumulate(ends_.begin(), ends_.end(), std::size_t{0}) > most) return false;
+  copy_rows(rows, pool);
+  return true;
+}
+
+void RowClusters::forget() { std::fill(rings_.begin(), rings_.end(), 0); }
+
+bool RowClusters::find_growing(const Row* rows, const NewtonRow* newton, std::span<const RowPatch> patches,
+                               double residual, const Limits& most, WorkerPool* pool) {
+  find_unsolved(rows, newton, patches, residual, pool);
+  for (const int body : unsolved_) rings_[at(body)] = std::min(rings_[at(body)] + 1, kMostRings);
+  for (;;) {
+    take_bodies();
+    const bool are_many = std::accumulate(ends_.begin(), ends_.end(), std::size_t{0}) > most.all;
+    const bool is_one_large =
+        std::any_of(ends_.begin(), ends_.end(), [&](std::size_t count) { return count > most.each; });
+    if (!are_many && !is_one_large) break;
+    if (!take_ring(are_many ? 0 : most.each)) return false;
+  }
+  share_rings();
   copy_rows(rows, pool);
   return true;
 }

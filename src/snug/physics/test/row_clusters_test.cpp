@@ -30,15 +30,18 @@ struct Chain {
     }
     for (const int i : kUnsolved) newton[static_cast<std::size_t>(i)].residual = 1.0;
   }
-  [[nodiscard]] bool find(int rings, const RowClusters::Limits& most) {
+  [[nodiscard]] bool find(int rings, std::size_t most) {
     return clusters.find(rows.data(), newton.data(), patches, 0.5, rings, most, nullptr);
+  }
+  [[nodiscard]] bool find_growing(const RowClusters::Limits& most) {
+    return clusters.find_growing(rows.data(), newton.data(), patches, 0.5, most, nullptr);
   }
 };
 
 TEST(RowClusters, AreTheUnsolvedWithRingsOfNeighbours) {
   Chain chain;
   for (int rings = 0; rings < 9; ++rings) {
-    ASSERT_TRUE(chain.find(rings, {1.0}));
+    ASSERT_TRUE(chain.find(rings, 39));
     ASSERT_EQ(chain.clusters.count(), 2U) << rings;
     for (std::size_t i = 0; i < 2; ++i) {
       const std::span<Row> cluster = chain.clusters[i];
@@ -46,21 +49,54 @@ TEST(RowClusters, AreTheUnsolvedWithRingsOfNeighbours) {
       EXPECT_EQ(cluster.front().ia, Chain::kUnsolved[i] - rings);
     }
   }
-  ASSERT_TRUE(chain.find(9, {1.0}));
+  ASSERT_TRUE(chain.find(9, 39));
   EXPECT_EQ(chain.clusters.count(), 1U) << "they meet";
 }
 
 TEST(RowClusters, AreNoLargerThanAsked) {
   Chain chain;
-  EXPECT_TRUE(chain.find(3, {14.0 / 39.0}));
-  EXPECT_FALSE(chain.find(3, {13.9 / 39.0})) << "fourteen rows in all";
-  EXPECT_TRUE(chain.find(3, {1.0, 7}));
-  EXPECT_FALSE(chain.find(3, {1.0, 6})) << "seven in each";
+  EXPECT_TRUE(chain.find(3, 14));
+  EXPECT_FALSE(chain.find(3, 13)) << "fourteen rows in all";
+}
+
+TEST(RowClusters, GrowWhereTheyAreFoundAgain) {
+  Chain chain;
+  for (std::size_t rings = 1; rings < 6; ++rings) {
+    ASSERT_TRUE(chain.find_growing({39, 39}));
+    ASSERT_EQ(chain.clusters.count(), 2U) << rings;
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(chain.clusters[i].size(), 1 + 2 * rings);
+  }
+  chain.clusters.forget();
+  ASSERT_TRUE(chain.find_growing({39, 39}));
+  EXPECT_EQ(chain.clusters[0].size(), 3U);
+}
+
+TEST(RowClusters, GrowAloneAndGoOnWhereTheRestWas) {
+  Chain chain;
+  ASSERT_TRUE(chain.find_growing({39, 39}));
+  ASSERT_TRUE(chain.find_growing({39, 39}));
+  // The first is solved. What is left of the second has moved to its rim.
+  chain.newton[9].residual = chain.newton[29].residual = 0.0;
+  chain.newton[31].residual = chain.newton[3].residual = 1.0;
+  ASSERT_TRUE(chain.find_growing({39, 39}));
+  ASSERT_EQ(chain.clusters.count(), 2U);
+  EXPECT_EQ(chain.clusters[0].size(), 3U) << "for the first time";
+  EXPECT_EQ(chain.clusters[1].size(), 7U) << "for the third time";
+}
+
+TEST(RowClusters, HaveFewerRingsWhereTheyWouldBeTooLarge) {
+  Chain chain;
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(chain.find_growing({39, 6}));
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(chain.clusters[i].size(), 5U) << "six are none";
+  ASSERT_TRUE(chain.find_growing({9, 39}));
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(chain.clusters[i].size(), 3U) << "ten in all are too many";
+  EXPECT_TRUE(chain.find_growing({2, 1}));
+  EXPECT_FALSE(chain.find_growing({1, 39})) << "there are two without any ring";
 }
 
 TEST(RowClusters, PutBackTheirImpulsesAlone) {
   Chain chain;
-  ASSERT_TRUE(chain.find(1, {1.0}));
+  ASSERT_TRUE(chain.find(1, 39));
   for (std::size_t i = 0; i < 2; ++i) {
     for (Row& row : chain.clusters[i]) row.lambda[0] = -1.0;
   }
