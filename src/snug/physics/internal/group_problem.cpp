@@ -50,6 +50,7 @@ constexpr ClusterSearch kSearch{20, 0, kMostClustered, 0}, kSearchLarge{20, 2, 0
 /// Chosen on heaps of 3000 boxes.
 constexpr ClusterSearch kSearchVast{60, 10, 0.1, 600};
 constexpr int kVastGroup = 6000;  ///< rows
+constexpr int kRoundsARun = 6;    ///< there, of clusters: then a run of kFirstSweeps for what is smooth
 constexpr int kCalmSweeps = 30;   ///< with little momentum, of a long run in such a group
 constexpr double kMostMomentum = 0.97;
 /// Of the tolerance: large groups at rest are solved as far as sweeps in single precision go.
@@ -218,11 +219,14 @@ void GroupProblem::measure() {
   measure_rows();
 }
 
-/// Between rounds of clusters in a large group: looks at idle contacts only where all others are solved.
+/// Between rounds of clusters in a large group: rounding of velocities and idle contacts are looked at only where all
+/// seems solved.
 void GroupProblem::measure_round() {
   if (!is_large()) return measure();
   measure_rows();
-  if (!is_solved() || wake() == 0) return;
+  if (!is_solved()) return;
+  apply_impulses();
+  (void)wake();
   best_ = std::numeric_limits<double>::infinity();
   measure_rows();
 }
@@ -354,9 +358,12 @@ bool GroupProblem::run_packed_sweeps(int count, double few) {
 /// rows that may stay unsolved.
 void GroupProblem::run_sweeps(int count, double few) {
   if (run_packed_sweeps(count, few)) {
+    if (count == kSweepsAround) {
+      steps_.packed->add_change(bodies(), u_);
+      return measure_round();
+    }
     apply_impulses();
-    count == kSweepsAround ? measure_round() : measure();
-    return;
+    return measure();
   }
   double* before = steps_.before.get();
   for (const Row* row = first_; row != end_; ++row, before += 3) std::copy_n(row->lambda, 3, before);
@@ -551,7 +558,8 @@ void GroupProblem::solve_clusters() {
     clusters.rows.put_back(first_);
     measure_round();
     if (is_solved()) continue;
-    is_large() ? run_sweeps(kSweepsAround, 0.0) : run_cycles(1);
+    const bool is_run = row_count() >= kVastGroup && round % kRoundsARun == kRoundsARun - 1;
+    is_large() ? run_sweeps(is_run ? kFirstSweeps : kSweepsAround, 0.0) : run_cycles(1);
   }
 }
 

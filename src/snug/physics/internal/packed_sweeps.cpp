@@ -385,4 +385,11 @@ int PackedSweeps::run(Row* rows, const double* u, const Effort& effort, WorkerPo
   return count;
 }
 
+void PackedSweeps::add_change(std::span<const int> bodies, double* u) const {
+  for (const int body : bodies) {
+    const Numbers& change = velocities_[at(place_[at(body)])];
+    for (int k = 0; k < 6; ++k) u[6 * body + k] += static_cast<double>(change[at(k)]);
+  }
+}
+
 }  // namespace snug::physics::internal

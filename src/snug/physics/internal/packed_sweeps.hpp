@@ -43,6 +43,8 @@ class PackedSweeps {
   /// Forward sweeps with Nesterov's momentum from the impulses of the packed rows and their velocities u. Leaves the
   /// impulses in the rows. Returns the number of sweeps.
   int run(Row* rows, const double* u, const Effort& effort, WorkerPool* pool = nullptr);
+  /// Adds to u what the last run has changed of the velocities of `bodies`, those that were packed.
+  void add_change(std::span<const int> bodies, double* u) const;
 
  private:
   static constexpr int kHalf = kLanes / 2;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "snug/core/rng.hpp"
@@ -103,6 +104,28 @@ TEST_P(PackedSweepsOf, RowsGiveTheSameBytesByVectorsOfAnyWidth) {
       const double *one = problems[0].rows[i].lambda, *other = problems[k].rows[i].lambda;
       EXPECT_TRUE(std::equal(one, one + 3, other)) << i;
     }
+  }
+}
+
+/// Up to the rounding of single precision, as often as a sweep changes a velocity.
+TEST_P(PackedSweepsOf, RowsChangeVelocitiesAsTheirImpulsesDo) {
+  for (const bool is_cut : {false, true}) {
+    Problem problem = drawn_problem(GetParam());
+    const std::vector<Vector3> centres = Problem::centres();
+    PackedSweeps sweeps(kBodies, problem.rows.size());
+    ASSERT_TRUE(sweeps.pack(problem.rows.data(), problem.patches, problem.bodies, is_cut ? centres.data() : nullptr));
+    std::vector<double> u = problem.velocities();
+    const std::vector<double> before = u;
+    (void)sweeps.run(problem.rows.data(), u.data(), {12, 0.9, 1e-5, 0.0});
+    sweeps.add_change(problem.bodies, u.data());
+    const std::vector<double> after = problem.velocities();
+    double changed = 0.0, missed = 0.0;
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      changed = std::max(changed, std::abs(after[i] - before[i]));
+      missed = std::max(missed, std::abs(after[i] - u[i]));
+    }
+    EXPECT_GT(changed, 0.1);
+    EXPECT_LT(missed, 1e-5);
   }
 }
 
