@@ -4,11 +4,13 @@
 #include <algorithm>
 
 #include "snug/physics/internal/chunks.hpp"
+#include "snug/physics/internal/contact_newton.hpp"
 
 namespace snug::physics::internal {
 namespace {
 
-constexpr int kNone = -1, kUnsolved = -2;  // of a root
+constexpr int kNone = -1, kUnsolved = -2, kSolved = -3;  // of a root; kNone: nothing bears on it
+constexpr int kSeveral = -2;                             // groups beside a body
 /// m/s, by which an idle contact opens at least. Those that hardly open are about to close.
 constexpr double kIdleSpeed = 1e-2;
 
@@ -22,6 +24,7 @@ RowGroups::RowGroups(std::size_t bodies, std::size_t rows)
       miss_(new double[rows]),
       parent_(bodies),
       group_(bodies),
+      beside_(bodies),
       seen_in_(bodies),
       order_(new int[rows]) {
   bodies_.reserve(bodies);
@@ -73,6 +76,7 @@ void RowGroups::join_bodies(double residual) {
     }
     const double miss = *std::max_element(miss_.get() + run.first, miss_.get() + run.end);
     if (miss > residual) group_[at(root)] = kUnsolved;
+    if (group_[at(root)] == kNone) group_[at(root)] = kSolved;
   }
 }
 
@@ -114,6 +118,25 @@ int RowGroups::group_of(const Bodies& bodies) const {
   return bodies.b < 0 || a == b ? a : kNone;  // between two groups: of none
 }
 
+/// The large group that watches an idle contact between one of its bodies and one on which nothing bears, or kNone.
+int RowGroups::watched_by(const Bodies& bodies) const {
+  if (bodies.a < 0 || bodies.b < 0) return kNone;
+  const int a = group_[at(bodies.a)], b = group_[at(bodies.b)];
+  const int group = std::max(a, b);
+  return group >= 0 && std::min(a, b) == kNone && groups_[at(group)].rows >= kSharedGroup ? group : kNone;
+}
+
+/// Of each body on which nothing bears the large group beside it, since groups share no body.
+void RowGroups::find_groups_beside() {
+  for (const int body : bodies_) beside_[at(body)] = kNone;
+  for (const Run& run : runs_) {
+    const int group = watched_by(run.bodies);
+    if (group < 0) continue;
+    int& beside = beside_[at(group_[at(run.bodies.a)] == kNone ? run.bodies.a : run.bodies.b)];
+    beside = beside == kNone || beside == group ? group : kSeveral;
+  }
+}
+
 /// Groups in the order of their first rows, and the rows of each.
 void RowGroups::number_groups() {
   groups_.clear();
@@ -131,9 +154,17 @@ void RowGroups::number_groups() {
 void RowGroups::sort_rows() {
   for (const Run& run : runs_) {
     const int group = group_of(run.bodies);
-    if (group < 0) continue;
-    groups_[at(group)].rows += run.bearing;
-    groups_[at(group)].idle += run.end - run.first - run.bearing;
+    if (group >= 0) groups_[at(group)].rows += run.bearing;
+  }
+  find_groups_beside();
+  for (Run& run : runs_) {
+    run.group = group_of(run.bodies);
+    const int watching = run.group < 0 ? watched_by(run.bodies) : kNone;
+    if (watching >= 0) {
+      const int body = group_[at(run.bodies.a)] == kNone ? run.bodies.a : run.bodies.b;
+      if (beside_[at(body)] == watching) run.group = watching;
+    }
+    if (run.group >= 0) groups_[at(run.group)].idle += run.end - run.first - run.bearing;
   }
   std::size_t begin = 0;
   for (Group& group : groups_) {
@@ -142,9 +173,8 @@ void RowGroups::sort_rows() {
     group.end = begin = group.next_idle + group.idle;
   }
   for (const Run& run : runs_) {
-    const int index = group_of(run.bodies);
-    if (index < 0) continue;
-    Group& group = groups_[at(index)];
+    if (run.group < 0) continue;
+    Group& group = groups_[at(run.group)];
     for (std::size_t i = run.first; i < run.end; ++i) {
       order_[state_[i] == State::Bears ? group.next++ : group.next_idle++] = static_cast<int>(i);
     }

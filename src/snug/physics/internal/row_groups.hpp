@@ -38,6 +38,7 @@ class RowGroups {
     Bodies bodies;
     std::size_t first, end;
     std::size_t bearing;  ///< rows that are not idle
+    int group = -1;       ///< that they belong to, or that watches them
   };
   struct Group {
     std::size_t rows = 0, end = 0;  ///< in order_: those that bear come first
@@ -52,6 +53,8 @@ class RowGroups {
   void number_groups();
   void sort_rows();
   [[nodiscard]] int group_of(const Bodies& bodies) const;
+  [[nodiscard]] int watched_by(const Bodies& bodies) const;
+  void find_groups_beside();
 
   Row* first_ = nullptr;  ///< of the island
   std::size_t row_count_ = 0;
@@ -62,6 +65,7 @@ class RowGroups {
   std::vector<int> parent_;            ///< union-find over bodies
   std::vector<int> group_;             ///< of each root: its number, or kNone, kUnsolved; in the end of each body
   std::vector<int> bodies_;            ///< of the island
+  std::vector<int> beside_;            ///< of each body: the large group beside it
   std::vector<std::int64_t> seen_in_;  ///< of each body: the search that last met it
   std::int64_t search_ = 0;
   std::vector<Group> groups_;
