@@ -14,7 +14,8 @@ namespace snug::physics::internal {
 
 /// An island is held together by all contacts that may matter in the step; half of them bear nothing in a pile. Those
 /// that are open and open further are idle: without them the island falls into groups that share no body. Idle contacts
-/// within a group are watched while it is solved (OpenGroup). Never allocates after construction.
+/// within a group are watched while it is solved (OpenGroup); a group of kSharedGroup rows or more watches also those
+/// with a body on which nothing bears, where no other such group does. Never allocates after construction.
 class RowGroups {
  public:
   RowGroups(std::size_t bodies, std::size_t rows);
