@@ -52,8 +52,10 @@ struct StepScratch {
 
 /// What a group of rows is solved with.
 struct GroupScratch {
-  /// `levels`: how often parts of a group are looked at in parts again.
-  GroupScratch(std::size_t bodies, std::size_t rows, std::shared_ptr<StepScratch> steps, int levels = 2);
+  static constexpr int kLevels = 2;  ///< how often parts of a group are looked at in parts again
+
+  /// `levels`: of them that are left; for a part fewer than all.
+  GroupScratch(std::size_t bodies, std::size_t rows, std::shared_ptr<StepScratch> steps, int levels = kLevels);
   ~GroupScratch();
   GroupScratch(GroupScratch&&) noexcept;
 
@@ -62,6 +64,7 @@ struct GroupScratch {
   std::unique_ptr<NewtonRow[]> rows;
   std::vector<double> u_free;  ///< 6 per active body
   std::unique_ptr<ClusterScratch> clusters;
+  bool is_part;                            ///< of a larger group
   bool is_infeasible = false;              ///< the group that was solved last: no velocities keep its contacts apart
   const SolverThreads* threads = nullptr;  ///< for large groups; nullptr: only the one that calls
   const Vector3* centres = nullptr;        ///< of each active body, m, W; nullptr: large groups are not cut

@@ -144,6 +144,9 @@ class GroupProblem {
   [[nodiscard]] double within_reach() const { return std::max(wanted_, kSingleResidual * tolerance_); }
   /// Whether factors of the whole cost more than many sweeps.
   [[nodiscard]] bool is_large() const { return work_.clusters != nullptr && end_ - first_ >= kLargeGroup; }
+  /// What generalized steps, sweeps and its own parts leave of it is left to the whole: the augmented Lagrangian would
+  /// take longer than many sweeps of that.
+  [[nodiscard]] bool is_large_part() const { return work_.is_part && end_ - first_ >= kLargeGroup; }
   [[nodiscard]] int first_sweeps() const {
     return std::clamp(static_cast<int>(kSweepsPerRow * static_cast<double>(row_count())), kFirstSweeps,
                       kMostFirstSweeps);
@@ -588,13 +591,13 @@ void GroupProblem::solve_from_here(bool is_nearly_solved) {
   if (is_swept && !is_solved()) {
     solve_clusters();
     restore_best();
-    if (!is_solved()) run_cycles(kCycles);
+    if (!is_solved() && !is_large_part()) run_cycles(kCycles);
   }
   work_.is_infeasible = !is_solved() && has_room_ && is_infeasible();
   if (work_.is_infeasible) share_violation();
   if (!is_solved() && !work_.is_infeasible && has_parts) solve_clusters();
   restore_best();
-  if (!is_solved() && !work_.is_infeasible) augment(kQuick);
+  if (!is_solved() && !work_.is_infeasible && !is_large_part()) augment(kQuick);
 }
 
 int GroupProblem::solve(bool is_nearly_solved) {
@@ -602,7 +605,7 @@ int GroupProblem::solve(bool is_nearly_solved) {
   start();
   if (!std::isfinite(best_)) return 0;  // the caller says so
   solve_from_here(is_nearly_solved);
-  if (work_.is_infeasible) return iterations_;
+  if (work_.is_infeasible || is_large_part()) return iterations_;
   if (!is_solved() && has_room_) {
     start_anew();
     solve_from_here(false);
@@ -629,7 +632,8 @@ GroupScratch::GroupScratch(std::size_t bodies, std::size_t row_capacity, std::sh
     : steps(std::move(shared)),
       system(bodies, row_capacity, steps->factors),
       rows(new NewtonRow[row_capacity]),
-      u_free(6 * bodies) {
+      u_free(6 * bodies),
+      is_part(levels < kLevels) {
   if (levels > 0) clusters.reset(new ClusterScratch{{bodies, row_capacity}, {bodies, row_capacity, steps, levels - 1}});
 }
 
