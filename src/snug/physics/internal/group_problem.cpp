@@ -50,7 +50,7 @@ constexpr ClusterSearch kSearch{20, 0, kMostClustered, 0}, kSearchLarge{20, 2, 0
 /// Chosen on heaps of 3000 boxes.
 constexpr ClusterSearch kSearchVast{60, 10, 0.1, 600};
 constexpr int kVastGroup = 6000;  ///< rows
-constexpr int kRoundsARun = 6;    ///< there, of clusters: then a run of kFirstSweeps for what is smooth
+constexpr int kRoundsARun = 6;    ///< of clusters in such a group; the last has kFirstSweeps for the smooth error
 constexpr int kCalmSweeps = 30;   ///< with little momentum, of a long run in such a group
 constexpr double kMostMomentum = 0.97;
 /// Of the tolerance: large groups at rest are solved as far as sweeps in single precision go.
@@ -591,7 +591,8 @@ void GroupProblem::solve_from_here(bool is_nearly_solved) {
   if (is_swept && !is_solved()) {
     solve_clusters();
     restore_best();
-    if (!is_solved() && !is_large_part()) run_cycles(kCycles);
+    // Factors of a very large group take more time and memory than to look for its clusters again.
+    if (!is_solved() && !is_large_part() && row_count() < kVastGroup) run_cycles(kCycles);
   }
   work_.is_infeasible = !is_solved() && has_room_ && is_infeasible();
   if (work_.is_infeasible) share_violation();

@@ -10,7 +10,7 @@ namespace snug::physics::internal {
 namespace {
 
 constexpr int kNone = -1, kUnsolved = -2, kSolved = -3;  // of a root; kNone: nothing bears on it
-constexpr int kSeveral = -2;                             // groups beside a body
+constexpr int kSeveral = -2;                             // groups beside a body: none watches it
 /// m/s, by which an idle contact opens at least. Those that hardly open are about to close.
 constexpr double kIdleSpeed = 1e-2;
 
@@ -126,13 +126,16 @@ int RowGroups::watched_by(const Bodies& bodies) const {
   return group >= 0 && std::min(a, b) == kNone && groups_[at(group)].rows >= kSharedGroup ? group : kNone;
 }
 
+/// Of bodies with a contact that a group watches: the one on which nothing bears.
+int RowGroups::free_body(const Bodies& bodies) const { return group_[at(bodies.a)] == kNone ? bodies.a : bodies.b; }
+
 /// Of each body on which nothing bears the large group beside it, since groups share no body.
 void RowGroups::find_groups_beside() {
   for (const int body : bodies_) beside_[at(body)] = kNone;
   for (const Run& run : runs_) {
     const int group = watched_by(run.bodies);
     if (group < 0) continue;
-    int& beside = beside_[at(group_[at(run.bodies.a)] == kNone ? run.bodies.a : run.bodies.b)];
+    int& beside = beside_[at(free_body(run.bodies))];
     beside = beside == kNone || beside == group ? group : kSeveral;
   }
 }
@@ -159,11 +162,7 @@ void RowGroups::sort_rows() {
   find_groups_beside();
   for (Run& run : runs_) {
     run.group = group_of(run.bodies);
-    const int watching = run.group < 0 ? watched_by(run.bodies) : kNone;
-    if (watching >= 0) {
-      const int body = group_[at(run.bodies.a)] == kNone ? run.bodies.a : run.bodies.b;
-      if (beside_[at(body)] == watching) run.group = watching;
-    }
+    if (run.group < 0 && watched_by(run.bodies) >= 0) run.group = beside_[at(free_body(run.bodies))];
     if (run.group >= 0) groups_[at(run.group)].idle += run.end - run.first - run.bearing;
   }
   std::size_t begin = 0;

@@ -55,6 +55,7 @@ class RowGroups {
   void sort_rows();
   [[nodiscard]] int group_of(const Bodies& bodies) const;
   [[nodiscard]] int watched_by(const Bodies& bodies) const;
+  [[nodiscard]] int free_body(const Bodies& bodies) const;
   void find_groups_beside();
 
   Row* first_ = nullptr;  ///< of the island
