@@ -161,7 +161,10 @@ Pace pace_of(const PreparedProgram& plan, const Pose& X_WE, int row) noexcept {
     pace = {limits.max_speed, limits.max_acceleration, limits.max_turn_speed, limits.max_turn_acceleration,
             fast.contact_window};
   }
-  if (is_insertion(waypoint)) pace = fast.insert;
+  if (is_insertion(waypoint)) {
+    pace = fast.insert;
+    if (row > 0 && is_contact_row(plan, row - 1)) pace.window = fast.contact_window;  // pressed where it stands
+  }
   if (is_detaching(waypoint)) pace = fast.detach;
   if (waypoint.io.vacuum && is_plumb(X_WE, pose_of(plan, row))) {
     const bool is_upright = std::abs(X_WE.R(2, 2)) > kUpright;

@@ -20,12 +20,12 @@ struct Sensed {
 /// Settings of FastTracking. Speeds count at tempo 1.
 struct FastSettings {
   /// Rows that touch nothing, the cup empty. The joints limit the speed too.
-  Pace empty = {2.0, 8.0, 2.5, 16.0, 0.10};
+  Pace empty = {2.0, 8.0, 4.0, 16.0, 0.06};
   /// The same with a box: averaged over a window in which most boxes swing a whole number of times (3 to 8 Hz).
-  Pace held = {2.0, 5.0, 2.5, 6.0, 0.25};
+  Pace held = {2.0, 5.0, 4.0, 12.0, 0.25};
   /// A held box on its way in (Place). Straight down, half of the motion comes later by half the period of its slow
   /// swing. Other rows that touch something have the scenario's limits for their names.
-  Pace insert = {0.75, 4.0, 1.5, 3.0, 0.10};
+  Pace insert = {0.9, 4.0, 1.5, 3.0, 0.10};
   /// The empty cup off a box that it let go, blowing: faster, the bellows would draw air in and the box with them.
   Pace detach = {0.4, 4.0, 1.0, 3.0, 0.04};
   /// m: so far a box that is lifted by its side swings at most when it leaves what it stood on. It tilts about its far

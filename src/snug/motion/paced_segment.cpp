@@ -32,27 +32,41 @@ Most most_at(const Way& way, const Pace& pace, double share) {
   return most;
 }
 
-/// The average over the window lowers accelerations. Twice the limit goes into it where no more than the limit comes
-/// out: on ways that are never faster than the limit times the window; and, where half of the motion comes so much
-/// later that both halves do not speed up at once, in the first half of the way. Slowing down there may end in contact.
-constexpr double kBeforeAverage = 2.0;
+using Parts = std::array<double, kPathParts>;
 
-void use_average(std::span<const double> rates, const Pace& pace, std::span<double> accelerations) {
-  bool is_slow = true, is_apart = pace.shaper_delay > 0.0;
-  for (std::size_t i = 0; i < rates.size(); ++i) {
-    is_slow = is_slow && rates[i] <= accelerations[i] * pace.window;
-    is_apart = is_apart && rates[i] / (kBeforeAverage * accelerations[i]) + pace.window <= pace.shaper_delay;
+/// On ways that are never faster than the limit times the window, no more than the limit comes out of the average,
+/// whatever goes in.
+constexpr double kBeforeAverage = 4.0;
+/// Where half of the motion comes so much later that both halves do not speed up at once, so much goes into the first
+/// half of the way. Slowing down there may end in contact.
+constexpr double kBeforeShaper = 2.0;
+
+/// So slow that it may speed up as fast as it likes.
+PathProfile slow_profile(Parts rates, Parts accelerations, const Smoothing& smoothing) {
+  for (std::size_t i = 0; i < kPathParts; ++i) {
+    rates[i] = std::min(rates[i], accelerations[i] * smoothing.window);
+    accelerations[i] *= kBeforeAverage;
   }
-  if (!is_slow && !is_apart) return;
-  const std::size_t parts = is_slow ? accelerations.size() : accelerations.size() / 2;
-  for (double& one : accelerations.first(parts)) one *= kBeforeAverage;
+  return {rates, accelerations, smoothing};
+}
+
+/// As fast as the limits allow.
+PathProfile fast_profile(const Parts& rates, Parts accelerations, const Smoothing& smoothing) {
+  bool is_apart = smoothing.shaper_delay > 0.0;
+  for (std::size_t i = 0; i < kPathParts; ++i) {
+    is_apart = is_apart && rates[i] / (kBeforeShaper * accelerations[i]) + smoothing.window <= smoothing.shaper_delay;
+  }
+  if (is_apart) {
+    for (double& one : std::span(accelerations).first(kPathParts / 2)) one *= kBeforeShaper;
+  }
+  return {rates, accelerations, smoothing};
 }
 
 }  // namespace
 
 PacedSegment::PacedSegment(const Way& way, const Pace& pace, const PathLimits* others) : way_(way) {
   if (!way.is_motion()) return;
-  std::array<double, kPathParts> rates{}, accelerations{};
+  Parts rates{}, accelerations{};
   Most before = most_at(way, pace, 0.0);
   for (std::size_t i = 0; i < kPathParts; ++i) {
     const Most after = most_at(way, pace, static_cast<double>(i + 1) / kPathParts);
@@ -61,8 +75,10 @@ PacedSegment::PacedSegment(const Way& way, const Pace& pace, const PathLimits* o
     before = after;
   }
   if (others != nullptr) others->limit(way, rates, accelerations);
-  use_average(rates, pace, accelerations);
-  profile_ = PathProfile(rates, accelerations, {pace.window, pace.shaper_delay});
+  const Smoothing smoothing{pace.window, pace.shaper_delay};
+  const PathProfile slow = slow_profile(rates, accelerations, smoothing);
+  profile_ = fast_profile(rates, accelerations, smoothing);
+  if (slow.duration() <= profile_.duration()) profile_ = slow;
 }
 
 PacedSegment::Increment PacedSegment::increment(double t) const noexcept {

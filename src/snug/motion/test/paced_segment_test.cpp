@@ -178,6 +178,11 @@ TEST(PacedSegment, SpeedsUpFasterWhereTheAverageKeepsTheLimit) {
   const double both_ends = 0.5 / speed + speed / limit;
   EXPECT_LE(shaped.duration(), both_ends - 0.25 * speed / limit + 0.1 + 0.2 + part);
   EXPECT_LE(fastest_change(shaped), limit * 1.001);
+  // A little too fast: slower pays.
+  const double faster = 0.9;
+  const PacedSegment slowed(way, {faster, limit, 1.0, 1.0, window, 0.0}, nullptr);
+  EXPECT_LE(slowed.duration(), 0.5 / faster + 0.8 * faster / limit + window);
+  EXPECT_LE(fastest_change(slowed), limit * 1.001);
   // Too fast for either: as slow as the limit asks.
   const PacedSegment plain(way, {speed, limit, 1.0, 1.0, 0.1, 0.0}, nullptr);
   EXPECT_GE(plain.duration(), both_ends + 0.1 - 1e-9);
