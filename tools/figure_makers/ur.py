@@ -45,7 +45,7 @@ def ur_row(words, kept, how, sequence, plant):
     key = f"{how} {sequence} {plant}"
     rows = json.loads(kept.read_text()) if kept.exists() else {}
     if key not in rows:
-        inside = ["--perception", how.split()[1], "--json"]
+        inside = ["--perception", how.split()[1], "--set", "robot.velocity_fraction=0.5", "--json"]  # as a UR that follows
         result = (json.loads(run([words.snug, "pack", SCENARIO, "--sequence", sequence, "--plant-seed", plant, *UR_PACK, *inside])) if how.startswith("inside")
                   else pack_through_ur(words, sequence, plant, how.split()[1]))
         if result["failure"]:

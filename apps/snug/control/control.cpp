@@ -35,7 +35,7 @@ struct ControlOptions {
 };
 
 int run_control(const ControlOptions& options) {
-  const model::Scenario scenario = load_changed(options.scenario, {});
+  model::Scenario scenario = load_changed(options.scenario, {});
   if (!scenario.robot || (options.robot && *options.robot != scenario.robot->name)) {
     throw InputError(
         scenario.source_name, "--robot", "'" + options.robot.value_or("") + "'",
@@ -47,6 +47,7 @@ int run_control(const ControlOptions& options) {
   cell::SimulationOptions how;
   const std::string text = read_file(options.program, "a program file (CSV)");
   choose_motion(options.motion, text, options.program, how);
+  cell::limit_joint_speeds(scenario, how.tracking);
   const motion::Program program = motion::parse_program(text, options.program);
   if (options.sequence) print_warnings(runs::find_misfits(scenario, *options.sequence, program));
   const std::string corrections = layer_of(options.corrections);

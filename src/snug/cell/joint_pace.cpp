@@ -72,6 +72,12 @@ std::optional<motion::PanAxis> find_pan_axis(const model::Scenario& scenario) {
   return motion::PanAxis{scenario.robot->X_WB.p, travel.least_pan, travel.least_radius};
 }
 
+void limit_joint_speeds(model::Scenario& scenario, const motion::Tracking& tracking) {
+  if (!scenario.robot || motion::is_fast(tracking)) return;
+  double& fraction = scenario.robot->velocity_fraction;
+  fraction = std::min(fraction, scenario.controller.velocity_fraction);
+}
+
 std::unique_ptr<const JointPace> make_joint_pace(const model::Scenario& scenario, double tempo) {
   std::error_code error;
   if (!scenario.robot || !std::filesystem::exists(robot::urdf_path(scenario), error)) return nullptr;

@@ -8,6 +8,7 @@
 
 #include "snug/model/scenario.hpp"
 #include "snug/motion/paced_segment.hpp"
+#include "snug/motion/tracking.hpp"
 #include "snug/robot/inverse.hpp"
 
 namespace snug::cell {
@@ -29,6 +30,9 @@ class JointPace final : public motion::PathLimits {
 
 /// The robot's first axis. None without a robot, and where it does not stand upright.
 [[nodiscard]] std::optional<motion::PanAxis> find_pan_axis(const model::Scenario& scenario);
+
+/// Programs that are not fast have the controller's share of the joints' speeds, if that is less than the robot's.
+void limit_joint_speeds(model::Scenario& scenario, const motion::Tracking& tracking);
 
 /// With the share of the scenario (velocity_fraction) and the tempo. None without a robot and where its file is not
 /// there.

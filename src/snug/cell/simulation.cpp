@@ -34,14 +34,18 @@ constexpr double kSealed = 0.5;        // 0.7 when the cup has stretched so far 
 constexpr double kFullySealed = 0.97;  // 3.5 time constants of drawing vacuum
 constexpr double kReleased = 0.05;     // 3 time constants of losing it
 
-/// The arm that the options ask for, or none. The tool then starts where the arm's joints put it.
-std::unique_ptr<CellArm> make_arm(model::Scenario& scenario, const model::Sequence& sequence, const std::string& name) {
+/// The arm that the options ask for, or none. The tool then starts where the arm's joints put it, and the scenario's
+/// robot is as fast as the controller lets it be.
+std::unique_ptr<CellArm> make_arm(model::Scenario& scenario, const model::Sequence& sequence,
+                                  const SimulationOptions& options) {
+  const std::string& name = options.robot;
   if (name.empty()) return nullptr;
   if (!scenario.robot || scenario.robot->name != name) {
     throw InputError(
         scenario.source_name, "--robot", "'" + name + "'",
         scenario.robot ? "'" + scenario.robot->name + "', the robot of the scenario" : "a scenario with a robot");
   }
+  limit_joint_speeds(scenario, options.tracking);
   auto arm = std::make_unique<CellArm>(scenario, sequence.task_stiffness.value_or(scenario.controller.task_stiffness));
   scenario.controller.X_WE_start = robot::forward_tool(arm->model(), arm->start());
   return arm;
@@ -136,7 +140,7 @@ Simulation::Simulation(model::Scenario scenario, const std::string& sequence, co
       options_(options),
       sequence_(require_sequence(scenario_, sequence)),
       substeps_(substeps_of(scenario_)),
-      arm_(make_arm(scenario_, sequence_, options.robot)),
+      arm_(make_arm(scenario_, sequence_, options)),
       world_(build_world(scenario_, arm_ ? WorldOptions{&sequence_, true, &arm_->model(), arm_->start()}
                                          : WorldOptions{&sequence_, true, nullptr, {}})),
       gripper_(scenario_, options.cup.value_or(cup::CupMode::Phases), world_) {

@@ -51,7 +51,9 @@ struct ControllerParams {
   double task_stiffness = 10.0;              ///< 1/s^2; critically damped
   double vacuum_wait = 0.5;                  ///< s, pose held after the vacuum command changed
   double convergence_deg_per_metre = 500.0;  ///< degrees of orientation error that weigh as much as one metre
-  Pose X_WE_start;                           ///< tool pose at the start
+  /// Of the URDF's joint speeds that its programs may use, at most the robot's own; fast motions use the robot's.
+  double velocity_fraction = 1.0;
+  Pose X_WE_start;  ///< tool pose at the start
   std::vector<MoveLimits> limits;
   std::vector<CorrectionLayer> correction_layers;
 
@@ -61,6 +63,7 @@ struct ControllerParams {
     a("task_stiffness", task_stiffness, Range::Positive);
     a("vacuum_wait", vacuum_wait, Range::NotNegative);
     a("convergence_deg_per_metre", convergence_deg_per_metre, Range::Positive);
+    a("velocity_fraction", velocity_fraction, Range::Fraction);
   }
   bool operator==(const ControllerParams&) const = default;
 };

@@ -240,6 +240,7 @@ void ScenarioReader::read_controller(const Value& value) {
   ControllerParams& controller = scenario_.controller;
   read_fields(map, controller);
   if (!(controller.tick >= scenario_.time_step)) map.require("tick").fail("a tick no shorter than time_step");
+  if (!(controller.velocity_fraction > 0.0)) map.require("velocity_fraction").fail("0", "more than 0, at most 1");
   controller.X_WE_start = read_world_pose(map.find("start_pose"));
   if (const auto limits = map.find("limits")) {
     for (const Value& entry : limits->list()) {

@@ -73,6 +73,7 @@ RemotePlant::RemotePlant(const model::Scenario& scenario, const std::string& seq
   if (motion::is_fast(options_.motions.tracking)) {
     pace_ = cell::make_joint_pace(scenario_, motion::tempo_of(options_.motions.tracking));
   }
+  cell::limit_joint_speeds(scenario_, options_.motions.tracking);
   arm_ = std::make_unique<cell::CellArm>(scenario_, tool_stiffness(scenario_, sequence_));
   state_ = arm_->make_state(scenario_.seed, link_.measured().q);
   program_ = motion::make_controller_state(state_.machine.tool.X_WE);

@@ -185,8 +185,10 @@ study::Trial run_served_trial(const PlantChoice& choice, const RemoteRun& run) {
   return ended(std::move(trial), kind, run, plant.finish());
 }
 
-study::Trial run_ur_trial(const PlantChoice& plant, const RemoteRun& run,
+study::Trial run_ur_trial(const PlantChoice& plant, const RemoteRun& asked,
                           const simulated_plant::SimulatedPlantOptions& simulated) {
+  const model::Scenario scenario = remote_ur::with_speed_to_follow(asked.scenario);
+  const RemoteRun run{scenario, asked.sequence, asked.session, asked.progress, asked.files, asked.tell};
   (void)ur_endpoint_of(plant);
   if (plant.is_dry) return run_dry(plant, run, simulated);
   const perception::Kind kind = perception::kind_of(plant.perception);

@@ -30,6 +30,11 @@ control::JointMotion at_rest(const ur::Values6& q) {
 
 }  // namespace
 
+model::Scenario with_speed_to_follow(model::Scenario scenario) {
+  if (scenario.robot) scenario.robot->velocity_fraction = std::min(scenario.robot->velocity_fraction, 0.5);
+  return scenario;
+}
+
 RemoteUr::RemoteUr(const model::Scenario& scenario, const std::string& sequence, RemoteUrOptions options)
     : options_(std::move(options)),
       scenario_(cell::with_fixed_arrivals(scenario, sequence)),
@@ -44,6 +49,7 @@ RemoteUr::RemoteUr(const model::Scenario& scenario, const std::string& sequence,
     throw InputError(scenario_.source_name, "robot.io", "no vacuum_gauge and no vacuum_reached",
                      "one of them: a motion needs to know whether the cup holds a box");
   }
+  cell::limit_joint_speeds(scenario_, options_.motions.tracking);
   arm_ = std::make_unique<cell::CellArm>(scenario_,
                                          sequence_.task_stiffness.value_or(scenario_.controller.task_stiffness));
   if (motion::is_fast(options_.motions.tracking)) {

@@ -45,6 +45,10 @@ struct RemoteUrOptions {
 inline constexpr double kDryHeight = 0.02;  ///< m, that waypoints are raised by
 inline constexpr double kDrySpeed = 0.25;   ///< of the planned speeds
 
+/// The scenario with a robot that is driven at half of its joints' speeds at most: what follow_script brings to rest,
+/// and goes on from where commands come late.
+[[nodiscard]] model::Scenario with_speed_to_follow(model::Scenario scenario);
+
 /// snug's controller of the joints runs here and writes a target for each period of the robot; a program of ours on the
 /// robot follows it (follow_script). What ends motions is what the robot's own sensors say: force, gauge or switch of
 /// the vacuum. Time of the plant is that of motions; the robot's slider slows them. Where the robot stops by itself,

@@ -2,6 +2,7 @@
 #include "snug/replay/limits.hpp"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "snug/core/input_error.hpp"
 #include "snug/core/units.hpp"
@@ -10,6 +11,17 @@
 #include "snug/robot/arm.hpp"
 
 namespace snug::replay {
+namespace {
+
+/// Of the joints' speeds, what the controller of the run allowed.
+double velocity_fraction_of(const record::RecordingHeader& header, const model::Scenario& scenario) {
+  const auto settings = nlohmann::json::parse(header.settings, nullptr, false);
+  const bool is_fast = !settings.is_object() || settings.value("controller", nlohmann::json("fast")) == "fast";
+  const double robots = scenario.robot->velocity_fraction;
+  return is_fast ? robots : std::min(robots, scenario.controller.velocity_fraction);
+}
+
+}  // namespace
 
 std::optional<JointUseLimits> joint_limits_of(const record::RecordingHeader& header, const std::string& urdf) {
   const std::optional<model::Scenario> scenario = internal::scenario_of(header);
@@ -22,10 +34,11 @@ std::optional<JointUseLimits> joint_limits_of(const record::RecordingHeader& hea
   }
   JointUseLimits limits;
   limits.acceleration = scenario->robot->max_joint_acceleration;
+  const double fraction = velocity_fraction_of(header, *scenario);
   for (const std::string& name : header.joints) {
     const auto found = std::ranges::find(known, name, &robot::JointLimits::joint);
     if (found == known.end() || !(found->max_speed > 0.0)) return std::nullopt;
-    limits.speed.push_back(scenario->robot->velocity_fraction * found->max_speed);
+    limits.speed.push_back(fraction * found->max_speed);
     limits.torque.push_back(found->max_effort);
   }
   return limits;

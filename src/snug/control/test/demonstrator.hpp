@@ -22,8 +22,11 @@ inline JointController make_controller(const model::RobotParams& params, double 
   return {robot::load_arm(demonstrator()), {0.008, stiffness, params, {}, "test"}};
 }
 
+/// At the speeds of the demonstrator's own controller.
 inline JointController make_controller(double stiffness = 10.0) {
-  return make_controller(*demonstrator().robot, stiffness);
+  model::RobotParams params = *demonstrator().robot;
+  params.velocity_fraction = demonstrator().controller.velocity_fraction;
+  return make_controller(params, stiffness);
 }
 
 inline robot::JointVector start_joints(const JointController& controller) {

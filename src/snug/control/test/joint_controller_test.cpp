@@ -104,7 +104,7 @@ TEST(JointController, KeepsEveryLimitWhereverItIsSent) {
 }
 
 TEST(JointController, StaysOffAJointLimit) {
-  model::RobotParams params = *test::demonstrator().robot;
+  model::RobotParams params = test::make_controller().settings().params;
   const JointController controller = test::make_controller(params);
   JointState state = controller.make_state(test::start_joints(controller));
   JointControllerWork work;
@@ -172,7 +172,7 @@ TEST(JointController, GoesThroughASingularityWithinItsLimits) {
 }
 
 TEST(JointController, RefusesPairsAndPosturesThatDoNotFitTheArm) {
-  model::RobotParams params = *test::demonstrator().robot;
+  model::RobotParams params = test::make_controller().settings().params;
   params.self_collision.push_back({"forearm_lnk", "gripper", 0.1, 0.05});
   try {
     (void)test::make_controller(params);
@@ -180,7 +180,7 @@ TEST(JointController, RefusesPairsAndPosturesThatDoNotFitTheArm) {
   } catch (const InputError& error) {
     EXPECT_NE(error.expected.find("forearm_link"), std::string::npos);
   }
-  params = *test::demonstrator().robot;
+  params = test::make_controller().settings().params;
   params.posture.pop_back();
   EXPECT_THROW((void)test::make_controller(params), InputError);
 }

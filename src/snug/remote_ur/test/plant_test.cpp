@@ -29,7 +29,7 @@ using plant::PlantContract;
 using test::SteppedLink;
 
 const model::Scenario& scenario() {
-  static const model::Scenario one = cell::with_fixed_arrivals(model::test::shortened(3), "1");
+  static const model::Scenario one = cell::with_fixed_arrivals(with_speed_to_follow(model::test::shortened(3)), "1");
   return one;
 }
 model::Scenario drawn() { return cell::draw_scenario(scenario(), "1", Rng(7).split("plant")); }

@@ -15,7 +15,7 @@ namespace {
 
 const std::string kScenarios = std::string(SNUG_SOURCE_DIR) + "/scenarios/";
 
-/// Of the demonstrator's cell, whose arm is a UR10 at half of its speeds.
+/// Of the demonstrator's cell, whose arm is a UR10.
 record::RecordingHeader ur10_header() {
   record::RecordingHeader header;
   header.scenario_text = read_file(kScenarios + "box-demonstrator.yaml", "a scenario");
@@ -26,8 +26,13 @@ record::RecordingHeader ur10_header() {
 
 std::string ur10() { return read_file(kScenarios + "robots/ur10.urdf", "a URDF"); }
 
-TEST(JointUseLimits, AreThoseOfTheUrdfAtTheSpeedsThatTheScenarioAllows) {
-  const auto limits = joint_limits_of(ur10_header(), ur10());
+TEST(JointUseLimits, AreThoseOfTheUrdfAtTheSpeedsThatTheControllerAllows) {
+  record::RecordingHeader header = ur10_header();
+  const auto fast = joint_limits_of(header, ur10());
+  ASSERT_TRUE(fast.has_value());
+  EXPECT_NEAR(fast->speed[0], 0.97 * 120.0 * std::numbers::pi / 180.0, 1e-12);
+  header.settings = R"({"controller": "lagged"})";
+  const auto limits = joint_limits_of(header, ur10());
   ASSERT_TRUE(limits.has_value());
   ASSERT_EQ(limits->speed.size(), 6U);
   EXPECT_NEAR(limits->speed[0], 0.5 * 120.0 * std::numbers::pi / 180.0, 1e-12);  // 120 degrees/s

@@ -98,7 +98,7 @@ TEST_F(Plot, TellsHowMuchOfTheLimitsOfTheRobotWasUsed) {
   ASSERT_EQ(figure.panels.size(), 3u);
   for (std::size_t i = 0; i < recording_.frames.size(); ++i) {
     const record::JointSample& elbow = recording_.frames[i].joints[1];
-    EXPECT_NEAR(figure.panels[1].curves[1].y[i], 100.0 * std::abs(elbow.velocity) / (0.5 * M_PI), 1e-9);
+    EXPECT_NEAR(figure.panels[1].curves[1].y[i], 100.0 * std::abs(elbow.velocity) / (0.97 * M_PI), 1e-9);
     EXPECT_NEAR(figure.panels[2].curves[1].y[i], 100.0 * std::abs(elbow.torque) / 150.0, 1e-9);
   }
   report::expect_sound(report::draw_svg(figure));

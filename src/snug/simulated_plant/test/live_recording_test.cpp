@@ -118,9 +118,11 @@ TEST_F(LiveRecordingTest, IsInTheFileUpToASecondBeforeAtAnyTime) {
   OutputFile file(folder / "run.h5");
   LiveRecordingOptions options;
   options.file = &file;
-  SimulatedPlant growing(three_boxes(), "1", eventful());
+  SimulatedPlantOptions slow = eventful();
+  slow.simulation.tracking = motion::FastTracking{0.5};
+  SimulatedPlant growing(three_boxes(), "1", slow);
   LiveRecording recording(growing, three_boxes(), options);
-  const std::string sent = motion::format_program({"", packing_of("BOX027").waypoints, motion::FastTracking{}});
+  const std::string sent = motion::format_program({"", packing_of("BOX027").waypoints, slow.simulation.tracking});
   int looks = 0;
   (void)pack(growing, "BOX027", [&](const cell::CellTick&) {
     const double now = growing.read().time;
