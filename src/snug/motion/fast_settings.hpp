@@ -20,7 +20,7 @@ struct Sensed {
 /// Settings of FastTracking. Speeds count at tempo 1.
 struct FastSettings {
   /// Rows that touch nothing, the cup empty. The joints limit the speed too.
-  Pace empty = {2.0, 8.0, 4.0, 16.0, 0.06};
+  Pace empty = {2.0, 10.0, 4.0, 20.0, 0.06};
   /// The same with a box: averaged over a window in which most boxes swing a whole number of times (3 to 8 Hz).
   Pace held = {2.0, 5.0, 4.0, 12.0, 0.25};
   /// A held box on its way in (Place). Straight down, half of the motion comes later by half the period of its slow

@@ -34,18 +34,15 @@ Most most_at(const Way& way, const Pace& pace, double share) {
 
 using Parts = std::array<double, kPathParts>;
 
-/// On ways that are never faster than the limit times the window, no more than the limit comes out of the average,
-/// whatever goes in.
-constexpr double kBeforeAverage = 4.0;
 /// Where half of the motion comes so much later that both halves do not speed up at once, so much goes into the first
 /// half of the way. Slowing down there may end in contact.
 constexpr double kBeforeShaper = 2.0;
 
-/// So slow that it may speed up as fast as it likes.
-PathProfile slow_profile(Parts rates, Parts accelerations, const Smoothing& smoothing) {
+/// So slow that more than the limits may go into the average.
+PathProfile slow_profile(Parts rates, Parts accelerations, const Smoothing& smoothing, double before_average) {
   for (std::size_t i = 0; i < kPathParts; ++i) {
     rates[i] = std::min(rates[i], accelerations[i] * smoothing.window);
-    accelerations[i] *= kBeforeAverage;
+    accelerations[i] *= before_average;
   }
   return {rates, accelerations, smoothing};
 }
@@ -76,7 +73,7 @@ PacedSegment::PacedSegment(const Way& way, const Pace& pace, const PathLimits* o
   }
   if (others != nullptr) others->limit(way, rates, accelerations);
   const Smoothing smoothing{pace.window, pace.shaper_delay};
-  const PathProfile slow = slow_profile(rates, accelerations, smoothing);
+  const PathProfile slow = slow_profile(rates, accelerations, smoothing, pace.before_average);
   profile_ = fast_profile(rates, accelerations, smoothing);
   if (slow.duration() <= profile_.duration()) profile_ = slow;
 }

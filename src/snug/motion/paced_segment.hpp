@@ -28,6 +28,9 @@ struct Pace {
   double max_turn_acceleration = 5.0;  ///< rad/s^2
   double window = 0.1;                 ///< s, over which the motion is averaged (Smoothing)
   double shaper_delay = 0.0;           ///< s, by which half of it comes later (Smoothing)
+  /// So many times the acceleration limits may go into the average where no more than the limits comes out: on ways
+  /// that are never faster than the limits times the window.
+  double before_average = 4.0;
   bool operator==(const Pace&) const = default;
 };
 
