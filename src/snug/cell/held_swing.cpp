@@ -1,16 +1,18 @@
-// held_swing_window: over how long motions with a box are averaged, so that no box is left swinging.
+// What held boxes ask of motions.
 #include "snug/cell/held_swing.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "snug/cup/swing.hpp"
+#include "snug/motion/fast_settings.hpp"
 
 namespace snug::cell {
 namespace {
 
 constexpr double kStep = 0.05;  ///< s
 constexpr double kShortest = 0.1, kLongest = 0.6;
+constexpr double kTorque = 0.3;  ///< N m
 
 }  // namespace
 
@@ -29,6 +31,14 @@ std::optional<double> held_swing_window(const model::Scenario& scenario, const m
   }
   if (slowest == 0.0) return std::nullopt;
   return std::clamp(kStep * std::round(slowest / kStep), kShortest, kLongest);
+}
+
+bool turns_gently(const model::Scenario& scenario, const model::Sequence& sequence) {
+  const double acceleration = motion::FastSettings{}.held.max_turn_acceleration;
+  return std::ranges::any_of(sequence.items, [&](const model::Item& item) {
+    const Matrix3& I_P = model::find_parcel(scenario, item.parcel)->inertia.inertia;
+    return I_P.diagonal().maxCoeff() * acceleration > kTorque;
+  });
 }
 
 }  // namespace snug::cell

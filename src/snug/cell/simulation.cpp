@@ -116,6 +116,7 @@ motion::PreparedProgram prepare(const model::Scenario& scenario, const model::Se
   motion::ControllerSettings settings;
   settings.tracking = options.tracking;
   if (motion::is_fast(options.tracking)) {
+    if (turns_gently(scenario, sequence)) settings.fast.held = settings.fast.held_gently;
     settings.fast.held.window = held_swing_window(scenario, sequence).value_or(settings.fast.held.window);
     settings.fast.pan_axis = find_pan_axis(scenario);
   }

@@ -169,7 +169,7 @@ Pace pace_of(const PreparedProgram& plan, const Pose& X_WE, int row) noexcept {
   if (waypoint.io.vacuum && is_plumb(X_WE, pose_of(plan, row))) {
     const bool is_upright = std::abs(X_WE.R(2, 2)) > kUpright;
     const bool is_lift = pose_of(plan, row).p.z() > X_WE.p.z();
-    if (is_lift) pace.before_average = 1.0;  // the window is no longer than a heavy box bounces
+    pace.before_average = 1.0;  // the window is no longer than a heavy box bounces
     if (is_upright || is_lift) pace.window = std::min(pace.window, fast.insert.window);
     pace.shaper_delay = is_insertion(waypoint) && waypoint.swing ? 0.5 * waypoint.swing->slow : 0.0;
     if (is_lift && !is_upright && waypoint.swing) {

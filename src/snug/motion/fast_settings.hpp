@@ -23,6 +23,8 @@ struct FastSettings {
   Pace empty = {2.0, 10.0, 4.0, 20.0, 0.06};
   /// The same with a box: averaged over a window in which most boxes swing a whole number of times (3 to 8 Hz).
   Pace held = {2.0, 5.0, 4.0, 12.0, 0.25};
+  /// The same of boxes that are hard to turn.
+  Pace held_gently = {2.0, 5.0, 2.5, 6.0, 0.25, 0.0, 1.0};
   /// A held box on its way in (Place). Straight down, half of the motion comes later by half the period of its slow
   /// swing. Other rows that touch something have the scenario's limits for their names.
   Pace insert = {0.9, 4.0, 1.5, 3.0, 0.10};
