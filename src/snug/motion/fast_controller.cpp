@@ -288,7 +288,7 @@ void check_fast(const FastSettings& settings, const std::string& where) {
   const auto require = [&](const char* key, double value, bool ok, const char* expected) {
     if (!ok) throw InputError(where, fmt::format("fast: {}", key), fmt::format("{}", value), expected);
   };
-  for (const Pace& pace : {settings.empty, settings.held, settings.insert, settings.detach}) {
+  for (const Pace& pace : {settings.empty, settings.held, settings.held_gently, settings.insert, settings.detach}) {
     for (const double value :
          {pace.max_speed, pace.max_acceleration, pace.max_turn_speed, pace.max_turn_acceleration, pace.window}) {
       require("pace", value, is_positive(value), "a finite number above 0");
