@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parent.parent
 SNUG = os.environ["SNUG"]
 CELL = ROOT / "scenarios" / "box-demonstrator.yaml"
 # Boxes of the items below, with the time in which each is handled.
-WINDOWS = {"BOX027": (0.5, 5.9), "BOX013": (5.9, 11.4), "BOX017": (11.4, 16.0)}
+WINDOWS = {"BOX027": (0.5, 5.8), "BOX013": (5.8, 11.3), "BOX017": (11.3, 14.3)}
 UNITS = {"rest_position": ("rest_position_mm", 1e3), "rest_rotation": ("rest_rotation_deg", 180.0 / math.pi), "rms_position": ("rms_position_mm", 1e3),
          "rms_rotation": ("rms_rotation_deg", 180.0 / math.pi), "rms_force": ("rms_force_N", 1.0), "rms_torque": ("rms_torque_Nm", 1.0)}
 # Noise and losses of the demonstrator's sensors; clocks and bias are known, as its analysis sets them by hand.

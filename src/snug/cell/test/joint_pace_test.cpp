@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "snug/cell/held_swing.hpp"
 #include "snug/core/rng.hpp"
 #include "snug/robot/load_arm.hpp"
 
@@ -114,6 +115,28 @@ TEST(JointPace, SevenJointsToo) {
   const robot::JointVector posture = robot::joint_vector(values);
   const double acceleration = scenario.robot->max_joint_acceleration;
   expect_limits_kept(scenario, JointPace(arm, posture, 1.0, acceleration), {inverse, posture, acceleration, 0.06});
+}
+
+TEST(LimitJointSpeeds, OfProgramsThatAreNotFastTheControllerLimitsThemToo) {
+  const model::Scenario demonstrator = model::load_scenario(kScenario);
+  const auto fraction_with = [&](const motion::Tracking& tracking, double robots) {
+    model::Scenario scenario = demonstrator;
+    scenario.robot->velocity_fraction = robots;
+    limit_joint_speeds(scenario, tracking);
+    return scenario.robot->velocity_fraction;
+  };
+  EXPECT_EQ(fraction_with(motion::Tracking{}, 0.97), 0.5);
+  EXPECT_EQ(fraction_with(motion::Tracking{}, 0.3), 0.3);
+  EXPECT_EQ(fraction_with(motion::FastTracking{}, 0.97), 0.97);
+}
+
+TEST(TurnsGently, CartonsOfAPalletDoAndTheDemonstratorsBoxesDoNot) {
+  const auto turns = [](const std::filesystem::path& path) {
+    const model::Scenario scenario = model::load_scenario(path);
+    return turns_gently(scenario, scenario.sequences.front());
+  };
+  EXPECT_FALSE(turns(kScenario));
+  EXPECT_TRUE(turns(kScenario.parent_path() / "pallet-four-cups.yaml"));
 }
 
 }  // namespace
