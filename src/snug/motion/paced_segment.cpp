@@ -73,8 +73,9 @@ PacedSegment::PacedSegment(const Way& way, const Pace& pace, const PathLimits* o
   }
   if (others != nullptr) others->limit(way, rates, accelerations);
   const Smoothing smoothing{pace.window, pace.shaper_delay};
-  const PathProfile slow = slow_profile(rates, accelerations, smoothing, pace.before_average);
   profile_ = fast_profile(rates, accelerations, smoothing);
+  if (pace.before_average <= 1.0) return;
+  const PathProfile slow = slow_profile(rates, accelerations, smoothing, pace.before_average);
   if (slow.duration() <= profile_.duration()) profile_ = slow;
 }
 

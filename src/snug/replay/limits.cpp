@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "snug/cell/joint_pace.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/units.hpp"
 #include "snug/cup/phases.hpp"
@@ -13,18 +14,16 @@
 namespace snug::replay {
 namespace {
 
-/// Of the joints' speeds, what the controller of the run allowed.
-double velocity_fraction_of(const record::RecordingHeader& header, const model::Scenario& scenario) {
+/// A recording that does not say otherwise was made fast.
+bool is_fast(const record::RecordingHeader& header) {
   const auto settings = nlohmann::json::parse(header.settings, nullptr, false);
-  const bool is_fast = !settings.is_object() || settings.value("controller", nlohmann::json("fast")) == "fast";
-  const double robots = scenario.robot->velocity_fraction;
-  return is_fast ? robots : std::min(robots, scenario.controller.velocity_fraction);
+  return !settings.is_object() || settings.value("controller", nlohmann::json("fast")) == "fast";
 }
 
 }  // namespace
 
 std::optional<JointUseLimits> joint_limits_of(const record::RecordingHeader& header, const std::string& urdf) {
-  const std::optional<model::Scenario> scenario = internal::scenario_of(header);
+  std::optional<model::Scenario> scenario = internal::scenario_of(header);
   if (header.joints.empty() || !scenario || !scenario->robot) return std::nullopt;
   std::vector<robot::JointLimits> known;
   try {
@@ -34,11 +33,11 @@ std::optional<JointUseLimits> joint_limits_of(const record::RecordingHeader& hea
   }
   JointUseLimits limits;
   limits.acceleration = scenario->robot->max_joint_acceleration;
-  const double fraction = velocity_fraction_of(header, *scenario);
+  if (!is_fast(header)) cell::limit_joint_speeds(*scenario, motion::LaggedTracking{});
   for (const std::string& name : header.joints) {
     const auto found = std::ranges::find(known, name, &robot::JointLimits::joint);
     if (found == known.end() || !(found->max_speed > 0.0)) return std::nullopt;
-    limits.speed.push_back(fraction * found->max_speed);
+    limits.speed.push_back(scenario->robot->velocity_fraction * found->max_speed);
     limits.torque.push_back(found->max_effort);
   }
   return limits;

@@ -12,7 +12,7 @@ namespace snug::replay {
 
 /// Limits that the joints of a run were driven with, base to tool.
 struct JointUseLimits {
-  std::vector<double> speed;   ///< rad/s (m/s): of the URDF, times the scenario's velocity_fraction
+  std::vector<double> speed;   ///< rad/s (m/s): of the URDF, times the velocity_fraction of robot and controller
   std::vector<double> torque;  ///< Nm (N), of the URDF; infinity where it does not know
   double acceleration = 0.0;   ///< rad/s^2 (m/s^2): the scenario's max_joint_acceleration
 };
