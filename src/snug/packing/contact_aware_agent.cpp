@@ -153,6 +153,18 @@ void keep_rim_free(std::span<const Item> kinds, Planning& planning) {
   }
 }
 
+/// Rows on a pallet are taken to be in line, with boxes as large as their kind: what each is off by would close slots
+/// that are as wide as a box. The rim has room for what adds up.
+bool is_aligned(const Planning& planning, std::span<const Item> kinds) {
+  return !planning.has_walls && stand_in_rows(planning, kinds);
+}
+
+Layout plan_layout(const Planning& planning, std::span<const Item> kinds, const ContainerState& state) {
+  const Rules rules = make_rules(planning, kinds);
+  return is_aligned(planning, kinds) ? to_aligned_layout(planning, rules, state, kinds)
+                                     : to_layout(planning, rules, state);
+}
+
 class ContactAwareAgent : public Agent {
  public:
   explicit ContactAwareAgent(AgentInput input) : input_(std::move(input)) {}
@@ -194,7 +206,7 @@ class ContactAwareAgent : public Agent {
     const std::vector<Item>& kinds = input_.future.kinds;
     Outlook outlook = look_ahead(planning, state, nullptr);
     outlook.race.first_futures = kFutures;
-    const std::vector<Layout> entrants{to_layout(planning, make_rules(planning, kinds), state)};
+    const std::vector<Layout> entrants{plan_layout(planning, kinds, state)};
     double best = 0.0;
     for (const Policy& policy : policies_for(planning, kinds)) {
       const Standing standing =
@@ -239,6 +251,9 @@ class ContactAwareAgent : public Agent {
     const PlaceCost& cost;
     const Choice& choice;
     const Layout& layout;
+    bool is_in_line;  ///< `item` has the size of its kind, and `layout` is aligned
+    const Item& measured;
+    const Layout& seen;  ///< as boxes lie
   };
   /// What races, and what it is charged.
   struct Field {
@@ -249,18 +264,21 @@ class ContactAwareAgent : public Agent {
     NoPlace reason = NoPlace::NoStablePlace;
   };
 
-  Expected<Decision, NoPlace> decide_planned(const ContainerState& state, const Item& item, const Planning& planning,
-                                             const PlaceCost& cost) {
+  Expected<Decision, NoPlace> decide_planned(const ContainerState& state, const Item& measured,
+                                             const Planning& planning, const PlaceCost& cost) {
+    std::vector<Item> kinds = input_.future.kinds;
+    kinds.push_back(measured);
+    const bool in_line = is_aligned(planning, kinds);
+    if (in_line) kinds.back() = with_size_of_kind(measured, kinds);
+    const Item& item = kinds.back();
     const Choice choice = make_choice(planning, item);
     if (const auto no = refuse(planning, item, choice)) return tl::unexpected(*no);
-    std::vector<Item> kinds = input_.future.kinds;
-    kinds.push_back(item);
-    const Layout layout = to_layout(planning, make_rules(planning, kinds), state);
+    const Layout layout = plan_layout(planning, kinds, state), seen = to_layout(planning, layout.rules(), state);
     CandidatePoseList list;
     Refusal worst = Refusal::None;
     layout.find_poses(choice.piece, list, &worst);
     if (list.poses.empty()) return tl::unexpected(reason_of(worst));
-    const Question question{planning, state, item, cost, choice, layout};
+    const Question question{planning, state, item, cost, choice, layout, in_line, measured, seen};
     Outlook outlook = look_ahead(planning, state, &item);
     const std::vector<Policy> policies = policies_for(planning, kinds);
     const PolicyChoice chosen =
@@ -294,6 +312,10 @@ class ContactAwareAgent : public Agent {
       auto candidate = place_item(ask.planning, ask.layout, ask.item, ask.choice, pose, input_.is_reachable);
       if (!candidate) {
         field.reason = candidate.error();
+        return;
+      }
+      if (ask.is_in_line && !make_clear(ask.planning, ask.seen, ask.measured, pose.z, *candidate)) {
+        field.reason = NoPlace::NoSpace;
         return;
       }
       field.costs.push_back(ask.cost ? ask.cost(candidate->placement) : 0.0);

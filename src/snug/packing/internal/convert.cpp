@@ -18,11 +18,47 @@ constexpr double kBeside = 0.060;
 // within 7 mm (skills/item_plan.cpp). Over: what carries a box beside an obstacle gives way a little.
 constexpr double kObstacleSide = 0.012, kObstacleTop = 0.005;
 
+constexpr int kAligned = 30;         ///< ticks: edges that lie nearer to each other were planned on one line
+constexpr double kSameSize = 0.003;  ///< m: a box that differs by less is as large as its kind
+
 int to_grams(double mass) { return static_cast<int>(std::lround(std::clamp(mass * 1000.0, 0.0, 1.0e9))); }
 
 int capacity(const Item& item) {
   if (item.no_stack) return 0;
   return item.max_load ? to_grams(*item.max_load) : Block::kNoLimit;
+}
+
+Layout stack(const Planning& planning, const Rules& rules, std::vector<Block> blocks,
+             const std::vector<Extent>& obstacles) {
+  Layout layout(rules);
+  for (const Extent& obstacle : obstacles) blocks.push_back(to_block(planning, obstacle));
+  // From below: what rests on a box has to come after it.
+  std::stable_sort(blocks.begin(), blocks.end(), [](const Block& a, const Block& b) { return a.z1 < b.z1; });
+  for (const Block& block : blocks) layout.add(block);
+  return layout;
+}
+
+/// Gives a side its length, about the same middle, and moves it by the least way that brings one of its ends to an
+/// edge. Its ends are edges then.
+void align(std::vector<int>& edges, int length, int& low, int& high) {
+  low = (low + high - length) / 2;
+  high = low + length;
+  int way = kAligned + 1;
+  for (const int edge : edges) {
+    for (const int end : {low, high}) {
+      if (std::abs(edge - end) < std::abs(way)) way = edge - end;
+    }
+  }
+  if (std::abs(way) <= kAligned) low += way, high += way;
+  edges.insert(edges.end(), {low, high});
+}
+
+/// By how much to go up to be clear on both sides, where `low` and `high` are the gaps to what stands there; half way
+/// where there is too little room. The block stays within the rim, which is `to_low` and `to_high` away.
+int way_between(int low, int high, int to_low, int to_high) {
+  int way = 0;
+  if (low < 0 || high < 0) way = low + high <= 0 ? (high - low) / 2 : low < 0 ? -low : high;
+  return to_low + to_high < 0 ? (to_high - to_low) / 2 : std::clamp(way, -to_low, to_high);
 }
 
 void look_beside(const Planning& planning, const Layout& layout, const Block& me, Candidate& candidate) {
@@ -114,14 +150,33 @@ Block to_block(const Planning& planning, const Extent& obstacle) {
 }
 
 Layout to_layout(const Planning& planning, const Rules& rules, const ContainerState& state) {
-  Layout layout(rules);
-  // From below: what rests on a box has to come after it.
   std::vector<Block> blocks;
   for (const PlacedBox& box : state.boxes) blocks.push_back(to_block(planning, box));
-  for (const Extent& obstacle : state.obstacles) blocks.push_back(to_block(planning, obstacle));
-  std::stable_sort(blocks.begin(), blocks.end(), [](const Block& a, const Block& b) { return a.z1 < b.z1; });
-  for (const Block& block : blocks) layout.add(block);
-  return layout;
+  return stack(planning, rules, std::move(blocks), state.obstacles);
+}
+
+Layout to_aligned_layout(const Planning& planning, const Rules& rules, const ContainerState& state,
+                         std::span<const Item> kinds) {
+  const int interference = to_ticks(planning.planned_interference);
+  std::vector<Block> blocks;
+  std::vector<int> edges_x{0, rules.size_x}, edges_y{0, rules.size_y};
+  for (const PlacedBox& box : state.boxes) {
+    Block& block = blocks.emplace_back(to_block(planning, box));
+    if (tilt(box) > kUprightTilt) continue;
+    const Extent upright = upright_extent({with_size_of_kind(box.item, kinds), box.X_TP});
+    const Vector3 size = upright.high - upright.low;
+    align(edges_x, to_ticks(size.x()) - interference, block.x1, block.x2);
+    align(edges_y, to_ticks(size.y()) - interference, block.y1, block.y2);
+  }
+  return stack(planning, rules, std::move(blocks), state.obstacles);
+}
+
+Item with_size_of_kind(Item item, std::span<const Item> kinds) {
+  const auto kind = std::ranges::find_if(kinds, [&item](const Item& other) {
+    return other.type == item.type && (other.size - item.size).lpNorm<Eigen::Infinity>() <= kSameSize;
+  });
+  if (kind != kinds.end()) item.size = kind->size;
+  return item;
 }
 
 Choice make_choice(const Planning& planning, const Item& item) {
@@ -196,6 +251,36 @@ Expected<Candidate, NoPlace> place_item(const Planning& planning, const Layout& 
     reason = NoPlace::NotReachable;
   }
   return tl::unexpected(reason);
+}
+
+bool make_clear(const Planning& planning, const Layout& layout, const Item& item, int base, Candidate& candidate) {
+  const Rules& rules = layout.rules();
+  const Vector3 half = 0.5 * extents(candidate.placement.orientation, item.size);
+  Vector3& p = candidate.placement.X_TP.p;
+  p.z() = base / kTicksPerMetre + half.z();
+  const Vector3 corner(0.5 * planning.inner_size.x(), 0.5 * planning.inner_size.y(), 0.0);
+  const Vector3 low = p - half + corner, high = p + half + corner;
+  Block block;
+  block.x1 = to_ticks(low.x()), block.y1 = to_ticks(low.y()), block.z1 = base;
+  block.x2 = to_ticks(high.x()), block.y2 = to_ticks(high.y()), block.z2 = to_ticks(high.z());
+  const std::array<int, 4> rim = {block.x1, rules.size_x - block.x2, block.y1, rules.size_y - block.y2};
+  std::array<int, 4> gap = rim;
+  for (const Block& b : layout.blocks()) {
+    if (b.z2 - block.z1 <= rules.level_slack || b.z1 >= block.z2) continue;
+    const int ox = std::min(block.x2, b.x2) - std::max(block.x1, b.x1);
+    const int oy = std::min(block.y2, b.y2) - std::max(block.y1, b.y1);
+    if (ox <= 0 && oy <= 0) continue;
+    const bool is_along_x = ox < oy;
+    const bool is_low = is_along_x ? b.x1 + b.x2 < block.x1 + block.x2 : b.y1 + b.y2 < block.y1 + block.y2;
+    int& least = gap[(is_along_x ? 0U : 2U) + (is_low ? 0U : 1U)];
+    least = std::min(least, -std::min(ox, oy));
+  }
+  const int dx = way_between(gap[0], gap[1], rim[0], rim[1]), dy = way_between(gap[2], gap[3], rim[2], rim[3]);
+  if (std::min({gap[0] + dx, gap[1] - dx, gap[2] + dy, gap[3] - dy}) < -kAligned) return false;
+  p += Vector3(dx, dy, 0.0) / kTicksPerMetre;
+  block.x1 += dx, block.x2 += dx, block.y1 += dy, block.y2 += dy;
+  look_beside(planning, layout, block, candidate);
+  return true;
 }
 
 }  // namespace snug::packing::internal

@@ -26,6 +26,12 @@ struct Planning {
 [[nodiscard]] Block to_block(const Planning& planning, const Extent& obstacle);
 /// Everything that stands in the container, in the order of the state.
 [[nodiscard]] Layout to_layout(const Planning& planning, const Rules& rules, const ContainerState& state);
+/// The same for rows of boxes that have no millimetre to spare: boxes have the length and width that their kind has,
+/// and an edge within 3 mm of one that was there before, or of the rim, lies on it.
+[[nodiscard]] Layout to_aligned_layout(const Planning& planning, const Rules& rules, const ContainerState& state,
+                                       std::span<const Item> kinds);
+/// With the size of the first kind of its type that it was measured within 3 mm of, if there is one.
+[[nodiscard]] Item with_size_of_kind(Item item, std::span<const Item> kinds);
 
 /// A piece that can stand with different extents; for each of them the orientations that give it.
 struct Choice {
@@ -44,5 +50,10 @@ struct Choice {
 [[nodiscard]] Expected<Candidate, NoPlace> place_item(const Planning& planning, const Layout& layout, const Item& item,
                                                       const Choice& choice, const CandidatePose& pose,
                                                       const std::function<bool(const Placement&)>& is_reachable);
+/// Moves a candidate that was found in an aligned layout, lowered to `base`, to where the item as it was measured is
+/// clear of what stands beside it; into the middle where there is too little room, but not over the rim. False: it
+/// would be more than 3 mm in the way.
+[[nodiscard]] bool make_clear(const Planning& planning, const Layout& layout, const Item& item, int base,
+                              Candidate& candidate);
 
 }  // namespace snug::packing::internal

@@ -128,6 +128,33 @@ TEST(ContactAwareAgent, FillsAPalletLayerByLayer) {
   }
 }
 
+TEST(ContactAwareAgent, PutsABoxIntoTheMiddleOfASlotOfAPalletThatIsAMillimetreTooNarrow) {
+  ContainerState state;
+  state.inner_size = Vector3(1.212, 0.412, 0.7);
+  state.has_walls = false;
+  Item nominal = make_box("A", {0.4, 0.4, 0.3});
+  nominal.upright_only = true;
+  Item measured = nominal;
+  measured.size = Vector3(0.4008, 0.3995, 0.3006);
+  // What boxes of 400 mm leave between them is 400 mm wide, and 399 mm is what these do.
+  constexpr double kLow = -0.4014, kHigh = 0.3984;
+  const Matrix3 turned = Eigen::AngleAxisd(0.002, Vector3::UnitZ()).toRotationMatrix();
+  state.boxes.push_back({measured, {turned, Vector3(kLow, 0.001, 0.15)}});
+  state.boxes.push_back({measured, {Matrix3::Identity(), Vector3(kHigh, -0.001, 0.15)}});
+  const FutureModel future{{nominal}, {1.0}, false};
+  const auto agent = make_agent(
+      "contact-aware", {.settings = {}, .future = future, .sequence = {}, .is_reachable = {}, .run = {.time = 0.01}});
+  const auto decision = agent->decide(state, measured);
+  ASSERT_TRUE(decision) << describe(decision.error());
+  const Vector3& p = decision->candidates.front().placement.X_TP.p;
+  EXPECT_NEAR(p.x(), 0.5 * (kLow + kHigh), 3e-4);
+  EXPECT_NEAR(p.z(), 0.5 * measured.size.z(), 1e-4) << "on the slab, as high as it is";
+  state.boxes.back().X_TP.p.x() -= 0.004;
+  const auto above = agent->decide(state, measured);
+  ASSERT_TRUE(above) << describe(above.error());
+  EXPECT_GT(above->candidates.front().placement.X_TP.p.z(), 0.3) << "the slot is 5 mm too narrow now";
+}
+
 TEST(ContactAwareAgent, LetsBoxesHangOverByAQuarterAtMostOnAPallet) {
   ContainerState state;
   state.inner_size = Vector3(0.6, 0.4, 0.7);
