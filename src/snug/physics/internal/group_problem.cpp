@@ -52,6 +52,11 @@ constexpr ClusterSearch kSearchVast{60, 10, 0.1, 600};
 constexpr int kVastGroup = 6000;  ///< rows
 constexpr int kRoundsARun = 6;    ///< of clusters in such a group; the last has kFirstSweeps for the smooth error
 constexpr int kCalmSweeps = 30;   ///< with little momentum, of a long run in such a group
+/// Rows from which on factors of the whole would take minutes.
+constexpr int kHugeGroup = 16000;
+/// Of a long run in such a group, from velocities made of the impulses again: what hundreds of sweeps of a heap 40
+/// boxes high round off passes the tolerance (0152).
+constexpr int kLastSweeps = 20;
 constexpr double kMostMomentum = 0.97;
 /// Of the tolerance: large groups at rest are solved as far as sweeps in single precision go.
 constexpr double kSingleResidual = 0.1;
@@ -147,6 +152,8 @@ class GroupProblem {
   /// What generalized steps, sweeps and its own parts leave of it is left to the whole: the augmented Lagrangian would
   /// take longer than many sweeps of that.
   [[nodiscard]] bool is_large_part() const { return work_.is_part && end_ - first_ >= kLargeGroup; }
+  /// Newton's method on the whole would take minutes: what clusters leave of it is left.
+  [[nodiscard]] bool is_huge() const { return is_large() && end_ - first_ >= kHugeGroup && !presses(); }
   [[nodiscard]] int first_sweeps() const {
     return std::clamp(static_cast<int>(kSweepsPerRow * static_cast<double>(row_count())), kFirstSweeps,
                       kMostFirstSweeps);
@@ -352,8 +359,17 @@ bool GroupProblem::run_packed_sweeps(int count, double few) {
     packed_rows_ = is_packed ? end_ - first_ : -1;
     if (!is_packed) return false;
   }
-  const int calm = count > kSweepsAround && row_count() >= kVastGroup ? kCalmSweeps : 0;
-  (void)steps_.packed->run(first_, u_, {count, kMostMomentum, within_reach(), few, kLanes, calm}, pool());
+  const auto run = [&](int sweeps, int calm) {
+    return steps_.packed->run(first_, u_, {sweeps, kMostMomentum, within_reach(), few, kLanes, calm}, pool());
+  };
+  if (count <= kSweepsAround || row_count() < kVastGroup) {
+    (void)run(count, 0);
+  } else if (row_count() < kHugeGroup) {
+    (void)run(count, kCalmSweeps);
+  } else if (run(count - kLastSweeps, 0) == count - kLastSweeps) {
+    apply_impulses();
+    (void)run(kLastSweeps, 0);
+  }
   return true;
 }
 
@@ -598,7 +614,7 @@ void GroupProblem::solve_from_here(bool is_nearly_solved) {
   if (work_.is_infeasible) share_violation();
   if (!is_solved() && !work_.is_infeasible && has_parts) solve_clusters();
   restore_best();
-  if (!is_solved() && !work_.is_infeasible && !is_large_part()) augment(kQuick);
+  if (!is_solved() && !work_.is_infeasible && !is_large_part() && !is_huge()) augment(kQuick);
 }
 
 int GroupProblem::solve(bool is_nearly_solved) {
@@ -607,6 +623,13 @@ int GroupProblem::solve(bool is_nearly_solved) {
   if (!std::isfinite(best_)) return 0;  // the caller says so
   solve_from_here(is_nearly_solved);
   if (work_.is_infeasible || is_large_part()) return iterations_;
+  if (is_huge()) {
+    if (is_solved()) return iterations_;
+    run_sweeps(first_sweeps(), kFewUnsolved);
+    solve_clusters();
+    restore_best();
+    return iterations_;
+  }
   if (!is_solved() && has_room_) {
     start_anew();
     solve_from_here(false);
