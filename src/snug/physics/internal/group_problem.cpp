@@ -54,8 +54,8 @@ constexpr int kRoundsARun = 6;    ///< of clusters in such a group; the last has
 constexpr int kCalmSweeps = 30;   ///< with little momentum, of a long run in such a group
 /// Rows from which on factors of the whole would take minutes.
 constexpr int kHugeGroup = 16000;
-/// Of a long run in such a group, from velocities made of the impulses again: what hundreds of sweeps of a heap 40
-/// boxes high round off passes the tolerance (0152).
+/// Of a long run in such a group, from velocities made of the impulses again, without momentum: what hundreds of sweeps
+/// round off, or leave swinging, passes the tolerance (docs/decisions/0152).
 constexpr int kLastSweeps = 20;
 constexpr double kMostMomentum = 0.97;
 /// Of the tolerance: large groups at rest are solved as far as sweeps in single precision go.
