@@ -255,14 +255,9 @@ Expected<Candidate, NoPlace> place_item(const Planning& planning, const Layout& 
 
 bool make_clear(const Planning& planning, const Layout& layout, const Item& item, int base, Candidate& candidate) {
   const Rules& rules = layout.rules();
-  const Vector3 half = 0.5 * extents(candidate.placement.orientation, item.size);
   Vector3& p = candidate.placement.X_TP.p;
-  p.z() = base / kTicksPerMetre + half.z();
-  const Vector3 corner(0.5 * planning.inner_size.x(), 0.5 * planning.inner_size.y(), 0.0);
-  const Vector3 low = p - half + corner, high = p + half + corner;
-  Block block;
-  block.x1 = to_ticks(low.x()), block.y1 = to_ticks(low.y()), block.z1 = base;
-  block.x2 = to_ticks(high.x()), block.y2 = to_ticks(high.y()), block.z2 = to_ticks(high.z());
+  p.z() = base / kTicksPerMetre + 0.5 * extents(candidate.placement.orientation, item.size).z();
+  Block block = to_block(planning, {item, candidate.placement.X_TP});
   const std::array<int, 4> rim = {block.x1, rules.size_x - block.x2, block.y1, rules.size_y - block.y2};
   std::array<int, 4> gap = rim;
   for (const Block& b : layout.blocks()) {

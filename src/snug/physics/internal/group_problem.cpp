@@ -622,15 +622,14 @@ int GroupProblem::solve(bool is_nearly_solved) {
   start();
   if (!std::isfinite(best_)) return 0;  // the caller says so
   solve_from_here(is_nearly_solved);
-  if (work_.is_infeasible || is_large_part()) return iterations_;
+  if (is_solved() || work_.is_infeasible || is_large_part()) return iterations_;
   if (is_huge()) {
-    if (is_solved()) return iterations_;
     run_sweeps(first_sweeps(), kFewUnsolved);
     solve_clusters();
     restore_best();
     return iterations_;
   }
-  if (!is_solved() && has_room_) {
+  if (has_room_) {
     start_anew();
     solve_from_here(false);
   }
