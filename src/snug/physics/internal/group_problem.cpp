@@ -54,9 +54,10 @@ constexpr int kRoundsARun = 6;    ///< of clusters in such a group; the last has
 constexpr int kCalmSweeps = 30;   ///< with little momentum, of a long run in such a group
 /// Rows from which on factors of the whole would take minutes.
 constexpr int kHugeGroup = 16000;
-/// Of a long run in such a group, from velocities made of the impulses again, without momentum: what hundreds of sweeps
-/// round off, or leave swinging, passes the tolerance (docs/decisions/0152).
-constexpr int kLastSweeps = 20;
+/// Sweeps from velocities that are made of the impulses again, with momentum from zero on: what many sweeps round off,
+/// or leave swinging, passes the tolerance. The last of a long run in such a group (docs/decisions/0152), and all of a
+/// part, which is solved for little (0153).
+constexpr int kFreshSweeps = 20;
 constexpr double kMostMomentum = 0.97;
 /// Of the tolerance: large groups at rest are solved as far as sweeps in single precision go.
 constexpr double kSingleResidual = 0.1;
@@ -362,13 +363,15 @@ bool GroupProblem::run_packed_sweeps(int count, double few) {
   const auto run = [&](int sweeps, int calm) {
     return steps_.packed->run(first_, u_, {sweeps, kMostMomentum, within_reach(), few, kLanes, calm}, pool());
   };
-  if (count <= kSweepsAround || row_count() < kVastGroup) {
+  if (work_.is_part && count > kSweepsAround) {
+    for (int left = count; left > 0 && run(kFreshSweeps, 0) == kFreshSweeps; left -= kFreshSweeps) apply_impulses();
+  } else if (count <= kSweepsAround || row_count() < kVastGroup) {
     (void)run(count, 0);
   } else if (row_count() < kHugeGroup) {
     (void)run(count, kCalmSweeps);
-  } else if (run(count - kLastSweeps, 0) == count - kLastSweeps) {
+  } else if (run(count - kFreshSweeps, 0) == count - kFreshSweeps) {
     apply_impulses();
-    (void)run(kLastSweeps, 0);
+    (void)run(kFreshSweeps, 0);
   }
   return true;
 }
