@@ -55,8 +55,8 @@ constexpr int kCalmSweeps = 30;   ///< with little momentum, of a long run in su
 /// Rows from which on factors of the whole would take minutes.
 constexpr int kHugeGroup = 16000;
 /// Sweeps from velocities that are made of the impulses again, with momentum from zero on: what many sweeps round off,
-/// or leave swinging, passes the tolerance. The last of a long run in such a group (docs/decisions/0152), and all of a
-/// part, which is solved for little (0153).
+/// or leave swinging, passes the tolerance. A long run in such a group ends with them (docs/decisions/0152); a run in a
+/// part consists of them (0153).
 constexpr int kFreshSweeps = 20;
 constexpr double kMostMomentum = 0.97;
 /// Of the tolerance: large groups at rest are solved as far as sweeps in single precision go.
