@@ -114,20 +114,18 @@ bool stand_in_rows(const Planning& planning, std::span<const Item> kinds) {
   return has_one_size || unit >= least_unit(planning);
 }
 
-Weights pallet_weights(Weights weights, const Planning& planning, std::span<const Item> kinds) {
-  weights = for_pallets(weights);
-  if (stand_in_rows(planning, kinds)) weights[Loose] = 0.0;
-  return weights;
-}
-
 /// Those that go on in roll-outs: the one of which more gets in decides. The tuned one knows edges that add up; maximal
 /// contact knows nothing and is as good where boxes are unlike those that it was tuned on. Boxes of a grid have a
 /// policy that was tuned on such boxes.
 std::vector<Policy> policies_for(const Planning& planning, std::span<const Item> kinds) {
   std::vector<Policy> policies(2, make_policy(planning, kinds));
-  const bool is_grid = planning.has_walls && are_of_a_grid(planning, kinds);
-  policies.back().weights = is_grid ? grid_weights() : contact_weights();
-  if (!planning.has_walls) policies.back().weights = pallet_weights(policies.back().weights, planning, kinds);
+  Weights& weights = policies.back().weights;
+  if (planning.has_walls) {
+    weights = are_of_a_grid(planning, kinds) ? grid_weights() : contact_weights();
+  } else {
+    weights = pallet_contact_weights();
+    if (stand_in_rows(planning, kinds)) weights[Loose] = 0.0;
+  }
   return policies;
 }
 
@@ -429,7 +427,8 @@ Policy make_policy(const Planning& planning, std::span<const Item> kinds) {
     }
   }
   const int longest = to_ticks(planning.inner_size.head<2>().maxCoeff());
-  const Weights weights = planning.has_walls ? default_weights() : pallet_weights(default_weights(), planning, kinds);
+  Weights weights = default_weights();
+  if (!planning.has_walls) weights = stand_in_rows(planning, kinds) ? pallet_row_weights() : pallet_weights();
   return {weights, WasteTable(along, longest), WasteTable(up, to_ticks(planning.inner_size.z()))};
 }
 

@@ -84,12 +84,13 @@ std::vector<Item> random_sequence(const model::Scenario& scenario, int seed) {
   return items;
 }
 
-/// Percent filled at the first box without a place.
+/// Percent filled at the first box without a place that may not be skipped.
 double pack_stream(const bench::Stream& stream, const Options& options) {
   AgentInput input{stream.settings, stream.future, stream.items, {}, {}, options.run};
   const bool is_greedy = bench::is_greedy(options.agent);
   const auto agent = is_greedy ? nullptr : make_agent(options.agent, std::move(input));
   ContainerState state = stream.container;
+  state.skips_left = options.skips;
   for (const Item& item : stream.items) {
     std::optional<Candidate> best;
     if (is_greedy) {
@@ -97,8 +98,12 @@ double pack_stream(const bench::Stream& stream, const Options& options) {
     } else if (auto decision = agent->decide(state, item)) {
       best = decision->candidates.front();
     }
-    if (!best) break;
-    state = with_candidate(std::move(state), item, *best);
+    if (best) {
+      state = with_candidate(std::move(state), item, *best);
+    } else {
+      if (state.skips_left-- <= 0) break;
+      state.skipped.push_back(item.id);
+    }
   }
   return filling_percent(state);
 }

@@ -108,6 +108,32 @@ std::vector<Cut> stacked(std::vector<Cut> cuts, Rng& rng) {
   return order;
 }
 
+/// An order of cartons of three to ten sizes, upright, 45 % more of them than the pallet takes by volume.
+void draw_pallet(Rng& rng, Stream& stream) {
+  stream.container.inner_size = Vector3(1.23, 1.03, 1.85);
+  stream.container.has_walls = false;
+  stream.future.comes_once = true;
+  std::vector<Item> pool;  // one to four of each size
+  for (int sizes = 3 + rng.index(8); sizes > 0;) {
+    const auto side = [&rng](int least, int most) { return 0.01 * (least + rng.index(most - least + 1)); };
+    const double length = side(30, 60), width = side(24, 40), height = side(12, 32);
+    Item item = make_item_of({length, width, height}, 0);
+    item.mass = rng.uniform(80.0, 140.0) * item.size.prod();
+    item.upright_only = true;
+    if (width > length || item.mass < 1.5 || item.mass > 8.0) continue;
+    pool.insert(pool.end(), static_cast<std::size_t>(1 + rng.index(4)), item);
+    --sizes;
+  }
+  for (double volume = 0.0; volume < 1.45 * stream.container.inner_size.prod();) {
+    Item item = pool[static_cast<std::size_t>(rng.index(static_cast<int>(pool.size())))];
+    item.id = "B" + std::to_string(stream.items.size());
+    volume += item.size.prod();
+    stream.items.push_back(item);
+    stream.future.kinds.push_back(item);
+    stream.future.weights.push_back(1.0);
+  }
+}
+
 }  // namespace
 
 std::optional<Stream> draw_stream(const std::string& family, Rng rng) {
@@ -144,6 +170,8 @@ std::optional<Stream> draw_stream(const std::string& family, Rng rng) {
       stream.future.kinds.push_back(draw(1000 + i));
       stream.future.weights.push_back(1.0);
     }
+  } else if (family == "pallet") {
+    draw_pallet(rng, stream);
   } else {
     return std::nullopt;
   }
@@ -180,6 +208,8 @@ std::optional<internal::Weights> weights_of(const std::string& agent) {
   if (agent == "contact") return internal::contact_weights();
   if (agent == "mixed") return internal::default_weights();
   if (agent == "grid") return internal::grid_weights();
+  if (agent == "pallet") return internal::pallet_weights();
+  if (agent == "pallet-rows") return internal::pallet_row_weights();
   if (agent != "lowest") return std::nullopt;
   internal::Weights lowest{};
   lowest[internal::Top] = 1.0;

@@ -28,6 +28,8 @@ Rectangle around(const Rectangle& a, const Rectangle& b) {
 Vector3 middle_of(const Block& b) { return {0.5 * (b.x1 + b.x2), 0.5 * (b.y1 + b.y2), 0.5 * (b.z1 + b.z2)}; }
 
 /// ticks^2: 21.5 m^2 would not fit into 31 bits.
+std::int64_t area_of(const Rectangle& a) { return std::int64_t{a.x2 - a.x1} * (a.y2 - a.y1); }
+
 std::int64_t shared_area(const Rectangle& a, const Block& b) {
   const int ox = std::min(a.x2, b.x2) - std::max(a.x1, b.x1);
   const int oy = std::min(a.y2, b.y2) - std::max(a.y1, b.y1);
@@ -114,7 +116,7 @@ void Layout::add(const Block& block) {
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     below += columns_[i] * static_cast<double>(shared_area(face, blocks_[i]));
   }
-  const double area = static_cast<double>(face.x2 - face.x1) * (face.y2 - face.y1);
+  const auto area = static_cast<double>(area_of(face));
   columns_.push_back(std::max(0.0, block.z2 - below / area));
   if (!rules_.has_walls) {
     const Bearing bearing = bearing_of(block);
@@ -123,6 +125,10 @@ void Layout::add(const Block& block) {
       bearings_[static_cast<std::size_t>(index)].first_moment += mass * place;
     });
     bearings_.push_back(bearing);
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+      if (is_at(blocks_[i], block.z1)) exposed_[i] -= shared_area(face, blocks_[i]);
+    }
+    exposed_.push_back(area_of(face));
   }
   blocks_.push_back(block);
   has_obstacles_ |= block.is_obstacle;
@@ -148,6 +154,11 @@ void Layout::add(const Block& block) {
   if (std::find(levels_.begin(), levels_.end(), level) == levels_.end()) open_level(level);
 }
 
+/// Whether the top of a block carries what stands at a height.
+bool Layout::is_at(const Block& below, int base) const {
+  return below.z2 <= base && base - below.z2 <= rules_.level_slack;
+}
+
 Bearing Layout::bearing_of(const Block& block) const {
   const Rectangle face = footprint(block);
   Bearing bearing;
@@ -156,7 +167,7 @@ Bearing Layout::bearing_of(const Block& block) const {
   bearing.first_moment = bearing.mass * middle_of(block);
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     const Block& below = blocks_[i];
-    if (below.z2 > block.z1 || block.z1 - below.z2 > rules_.level_slack) continue;
+    if (!is_at(below, block.z1)) continue;
     const auto area = static_cast<double>(shared_area(face, below));
     if (area <= 0.0) continue;
     const Rectangle shared{std::max(face.x1, below.x1), std::max(face.y1, below.y1), std::min(face.x2, below.x2),
@@ -206,6 +217,17 @@ std::array<double, 4> Layout::tipping_of(const Block& block) const {
           below.first_moment + mass * place);
   });
   return least;
+}
+
+std::int64_t Layout::left_exposed(const Block& block) const {
+  const Rectangle face = footprint(block);
+  std::int64_t sum = 0;
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    if (!is_at(blocks_[i], block.z1)) continue;
+    const std::int64_t shared = shared_area(face, blocks_[i]);
+    if (shared > 0) sum += std::max<std::int64_t>(0, exposed_[i] - shared);
+  }
+  return sum;
 }
 
 void Layout::cut(std::vector<Rectangle>& areas, const Rectangle& hole) {
@@ -297,9 +319,8 @@ Refusal Layout::settle(const Piece& piece, int orientation, int x, int y, Candid
 }
 
 bool Layout::rests_on_obstacle(const Rectangle& face, int base) const {
-  return std::ranges::any_of(blocks_, [&](const Block& b) {
-    return b.is_obstacle && b.z2 <= base && base - b.z2 <= rules_.level_slack && shared_area(face, b) > 0;
-  });
+  return std::ranges::any_of(
+      blocks_, [&](const Block& b) { return b.is_obstacle && is_at(b, base) && shared_area(face, b) > 0; });
 }
 
 bool Layout::is_balanced(const Rectangle& face, int base, int com_x, int com_y) const {
@@ -307,7 +328,7 @@ bool Layout::is_balanced(const Rectangle& face, int base, int com_x, int com_y) 
   const int m = rules_.com_margin;
   std::vector<Point> corners;
   for (const Block& b : blocks_) {
-    if (b.z2 > base || base - b.z2 > rules_.level_slack || shared_area(face, b) == 0) continue;
+    if (!is_at(b, base) || shared_area(face, b) == 0) continue;
     const Rectangle r{std::max(face.x1, b.x1), std::max(face.y1, b.y1), std::min(face.x2, b.x2),
                       std::min(face.y2, b.y2)};
     if (com_x - m >= r.x1 && com_x + m <= r.x2 && com_y - m >= r.y1 && com_y + m <= r.y2) return true;
@@ -344,13 +365,12 @@ bool Layout::carries(const Rectangle& face, int base, int mass) const {
 void Layout::add_load(std::size_t upper, double mass) {
   const Block& top = blocks_[upper];
   const Rectangle face = footprint(top);
-  const auto rests_on = [&](const Block& b) { return b.z2 <= top.z1 && top.z1 - b.z2 <= rules_.level_slack; };
   double total = 0.0;
   for (std::size_t i = 0; i < upper; ++i)
-    total += rests_on(blocks_[i]) ? static_cast<double>(shared_area(face, blocks_[i])) : 0.0;
+    total += is_at(blocks_[i], top.z1) ? static_cast<double>(shared_area(face, blocks_[i])) : 0.0;
   if (total <= 0.0) return;
   for (std::size_t i = 0; i < upper; ++i) {
-    const double shared = rests_on(blocks_[i]) ? static_cast<double>(shared_area(face, blocks_[i])) : 0.0;
+    const double shared = is_at(blocks_[i], top.z1) ? static_cast<double>(shared_area(face, blocks_[i])) : 0.0;
     if (shared <= 0.0) continue;
     loads_[i] += mass * shared / total;
     add_load(i, mass * shared / total);

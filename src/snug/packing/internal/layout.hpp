@@ -119,6 +119,9 @@ class Layout {
   /// down. For layouts without walls.
   [[nodiscard]] std::array<double, 4> tipping_of(const Block& block) const;
 
+  /// ticks^2 that stay free, once a block is put there, of the tops that it rests on. For layouts without walls.
+  [[nodiscard]] std::int64_t left_exposed(const Block& block) const;
+
  private:
   struct Space {
     int level = 0;
@@ -134,6 +137,7 @@ class Layout {
   [[nodiscard]] bool carries(const Rectangle& face, int base, int mass) const;
   [[nodiscard]] bool rests_on_obstacle(const Rectangle& face, int base) const;
   void add_load(std::size_t upper, double mass);
+  [[nodiscard]] bool is_at(const Block& below, int base) const;
   [[nodiscard]] Bearing bearing_of(const Block& block) const;
   /// Calls visit(index, mass, place) for every block on which a part of a load rests that goes through `bearing`.
   template <class Visit>
@@ -143,8 +147,9 @@ class Layout {
   std::vector<Block> blocks_;
   BlockTable table_;  ///< the same by coordinate
   std::vector<double> columns_;
-  std::vector<double> loads_;      ///< g on each block; kept only when a block has a limit
-  std::vector<Bearing> bearings_;  ///< of each block; kept only without walls
+  std::vector<double> loads_;          ///< g on each block; kept only when a block has a limit
+  std::vector<Bearing> bearings_;      ///< of each block; kept only without walls
+  std::vector<std::int64_t> exposed_;  ///< ticks^2 of its top on which nothing rests; kept only without walls
   bool has_limits_ = false;
   bool has_obstacles_ = false;
   std::vector<Space> spaces_;

@@ -139,12 +139,39 @@ Weights contact_weights() {
   return w;
 }
 
-Weights for_pallets(Weights weights) {
+Weights pallet_weights() {
+  Weights w{};
+  w[Base] = 3.96;
+  w[Top] = -6.33;
+  w[Buried] = 6.13;
+  w[SideWaste] = 18.18;
+  w[HeightWaste] = 5.37;
+  w[Contact] = -0.48;
+  w[Flush] = 3.48;
+  w[Support] = -5.60;
+  w[Footprint] = -2.77;
+  w[Sliver] = -0.83;
+  w[Touch] = -4.65;
+  w[Tipping] = 2.77;
+  w[Loose] = 0.44;
+  w[Exposed] = 9.34;
+  return w;
+}
+
+Weights pallet_row_weights() {
+  Weights w = default_weights();
   // A tenth of the height counts as much as a face that touches all round; a few millimetres of unevenness do not.
-  weights[Base] += 10.0;
-  weights[Tipping] += 3.0;
-  weights[Loose] += 4.0;
-  return weights;
+  w[Base] += 10.0;
+  w[Tipping] = 3.0;
+  return w;
+}
+
+Weights pallet_contact_weights() {
+  Weights w = contact_weights();
+  w[Base] += 10.0;
+  w[Tipping] = 3.0;
+  w[Loose] = 4.0;
+  return w;
 }
 
 WasteTable::WasteTable(const std::vector<int>& lengths, int longest) {
@@ -179,7 +206,7 @@ Features see(const Layout& layout, const Policy& policy, const Piece& piece, con
   const double area = width * depth;
   const BlockTable::Beside s = look_beside(layout, me);
   const double contact = static_cast<double>(s.contact);
-  const double room = static_cast<double>(rules.size_x) * rules.size_y * rules.size_z;
+  const double floor = static_cast<double>(rules.size_x) * rules.size_y, room = floor * rules.size_z;
   Features f{};
   f[Base] = static_cast<double>(me.z1) / rules.size_z;
   f[Top] = static_cast<double>(me.z2) / rules.size_z;
@@ -191,12 +218,13 @@ Features see(const Layout& layout, const Policy& policy, const Piece& piece, con
   f[Contact] = contact / (2.0 * (width + depth) * height);
   f[Flush] = static_cast<double>(s.flush) / (2.0 * (width + depth));
   f[Support] = pose.support;
-  f[Footprint] = 10.0 * area / (static_cast<double>(rules.size_x) * rules.size_y);
+  f[Footprint] = 10.0 * area / floor;
   f[Touch] = (contact + pose.support * area) / (2.0 * (area + (width + depth) * height));
   for (const int gap : s.gap) f[Sliver] += gap > kTouch && gap < rules.min_side ? 1.0 : 0.0;
   if (!rules.has_walls) {
     f[Tipping] = see_tipping(layout, me);
     f[Loose] = see_loose(layout, me);
+    f[Exposed] = 10.0 * static_cast<double>(layout.left_exposed(me)) / floor;
   }
   return f;
 }

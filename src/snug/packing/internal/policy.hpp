@@ -23,6 +23,7 @@ enum Feature {
   Touch,
   Tipping,  ///< of a pallet: how easily it tips, or what it stands on with it
   Loose,    ///< of a pallet: how far film that presses it inward can push it before a neighbour backs it
+  Exposed,  ///< of a pallet: area of the tops that it stands on that stays free
   kFeatureCount
 };
 using Features = std::array<double, kFeatureCount>;
@@ -35,9 +36,13 @@ using Weights = std::array<double, kFeatureCount>;
 [[nodiscard]] Weights grid_weights();
 /// Maximal contact: as much of the whole surface as can be touches boxes, floor and walls; of equals the lowest.
 [[nodiscard]] Weights contact_weights();
-/// The same for a container without walls, where nothing holds a column that stands by itself: of two places the lower
-/// one, and what tips easily or is not backed against film costs.
-[[nodiscard]] Weights for_pallets(Weights weights);
+/// Of pallets, where nothing holds a column that stands by itself, and what tips easily or is not backed against film
+/// costs. Tuned on cartons of three to ten sizes.
+[[nodiscard]] Weights pallet_weights();
+/// For boxes of which rows are as long as the pallet: layer by layer.
+[[nodiscard]] Weights pallet_row_weights();
+/// Maximal contact, and of two places the lower one.
+[[nodiscard]] Weights pallet_contact_weights();
 
 /// What is left of a length when it is filled as well as sums of these lengths can: one entry a millimetre.
 class WasteTable {

@@ -321,7 +321,7 @@ TEST(LayoutTipping, CostsWhereAColumnStandsByItselfAndHalfWhereANeighbourHoldsIt
   Piece piece;
   piece.mass = 5000;
   piece.orientations.push_back({4000, 3000, 3000, 0, 0, 0});
-  const Policy policy{for_pallets(default_weights()), WasteTable({4000}, 12000), WasteTable({3000}, 18000)};
+  const Policy policy{pallet_weights(), WasteTable({4000}, 12000), WasteTable({3000}, 18000)};
   const CandidatePose on_top{0, 0, 9000, 0, 1.0};
   // Along x it tips at 0.33 g, along y at 0.25 g of 0.3: the edge at y = 0 holds it as little as the open side does.
   const double each = 1.0 - 0.25 / 0.3;
@@ -332,13 +332,44 @@ TEST(LayoutTipping, CostsWhereAColumnStandsByItselfAndHalfWhereANeighbourHoldsIt
   EXPECT_NEAR(see(layout, policy, piece, on_top)[Tipping], 1.5 * each, 1e-12);
 }
 
+TEST(LayoutExposed, IsWhatStaysFreeOfTheTopsThatABoxStandsOn) {
+  constexpr std::int64_t kSquareMillimetre = 100;
+  Layout layout = make_pallet();
+  layout.add(box_at(0, 0, 0, 400, 400, 300, 6));
+  layout.add(box_at(400, 0, 0, 400, 400, 298, 6));
+  layout.add(box_at(0, 400, 0, 400, 400, 290, 6));
+  const Block first = box_at(0, 0, 300, 400, 300, 200, 5);
+  EXPECT_EQ(layout.left_exposed(first), 400 * 100 * kSquareMillimetre);
+  layout.add(first);
+  EXPECT_EQ(layout.left_exposed(box_at(0, 300, 300, 400, 100, 200, 1)), 0) << "the rest of the same top";
+  EXPECT_EQ(layout.left_exposed(box_at(300, 300, 300, 200, 100, 200, 1)),
+            (300 * 100 + 400 * 400 - 100 * 100) * kSquareMillimetre)
+      << "tops that differ by the slack carry together";
+  EXPECT_EQ(layout.left_exposed(box_at(0, 400, 290, 400, 400, 200, 5)), 0) << "a lower top is another one";
+  EXPECT_EQ(layout.left_exposed(box_at(800, 0, 0, 400, 400, 300, 6)), 0) << "the floor is no top";
+}
+
+TEST(LayoutExposed, CostsSoThatABoxGoesOnTheTopThatItCovers) {
+  Layout layout = make_pallet();
+  layout.add(box_at(0, 0, 0, 400, 400, 300, 6));
+  layout.add(box_at(600, 0, 0, 400, 300, 300, 6));
+  Piece piece;
+  piece.mass = 5000;
+  piece.orientations.push_back({4000, 3000, 2000, 0, 0, 0});
+  const Policy policy{pallet_weights(), WasteTable({4000}, 12000), WasteTable({2000}, 18000)};
+  const CandidatePose on_larger{0, 0, 3000, 0, 1.0}, on_equal{6000, 0, 3000, 0, 1.0};
+  EXPECT_NEAR(see(layout, policy, piece, on_larger)[Exposed], 10.0 * (0.4 * 0.1) / (1.2 * 0.8), 1e-12);
+  EXPECT_EQ(see(layout, policy, piece, on_equal)[Exposed], 0.0);
+  EXPECT_LT(cost(layout, policy, piece, on_equal), cost(layout, policy, piece, on_larger));
+}
+
 TEST(LayoutBacking, CostsAsFarAsFilmCanPushABoxInwardBeforeANeighbourBacksIt) {
   Layout layout = make_pallet();
   layout.add(box_at(0, 0, 0, 400, 300, 300, 5));
   Piece piece;
   piece.mass = 5000;
   piece.orientations.push_back({4000, 3000, 3000, 0, 0, 0});
-  const Policy policy{for_pallets(default_weights()), WasteTable({4000}, 12000), WasteTable({3000}, 18000)};
+  const Policy policy{pallet_weights(), WasteTable({4000}, 12000), WasteTable({3000}, 18000)};
   const auto loose_at = [&](int x) { return see(layout, policy, piece, {10 * x, 0, 0, 0, 1.0})[Loose]; };
   EXPECT_EQ(loose_at(400), 0.0);
   EXPECT_EQ(loose_at(405), 0.0) << "5 mm are no matter";
