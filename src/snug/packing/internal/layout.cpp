@@ -126,7 +126,7 @@ void Layout::add(const Block& block) {
     });
     bearings_.push_back(bearing);
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
-      if (is_at(blocks_[i], block.z1)) exposed_[i] -= shared_area(face, blocks_[i]);
+      if (bears_at(blocks_[i], block.z1)) exposed_[i] -= shared_area(face, blocks_[i]);
     }
     exposed_.push_back(area_of(face));
   }
@@ -154,8 +154,8 @@ void Layout::add(const Block& block) {
   if (std::find(levels_.begin(), levels_.end(), level) == levels_.end()) open_level(level);
 }
 
-/// Whether the top of a block carries what stands at a height.
-bool Layout::is_at(const Block& below, int base) const {
+/// Whether something that stands at a height stands on the top of a block, if it is over it.
+bool Layout::bears_at(const Block& below, int base) const {
   return below.z2 <= base && base - below.z2 <= rules_.level_slack;
 }
 
@@ -167,7 +167,7 @@ Bearing Layout::bearing_of(const Block& block) const {
   bearing.first_moment = bearing.mass * middle_of(block);
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     const Block& below = blocks_[i];
-    if (!is_at(below, block.z1)) continue;
+    if (!bears_at(below, block.z1)) continue;
     const auto area = static_cast<double>(shared_area(face, below));
     if (area <= 0.0) continue;
     const Rectangle shared{std::max(face.x1, below.x1), std::max(face.y1, below.y1), std::min(face.x2, below.x2),
@@ -223,7 +223,7 @@ std::int64_t Layout::left_exposed(const Block& block) const {
   const Rectangle face = footprint(block);
   std::int64_t sum = 0;
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    if (!is_at(blocks_[i], block.z1)) continue;
+    if (!bears_at(blocks_[i], block.z1)) continue;
     const std::int64_t shared = shared_area(face, blocks_[i]);
     if (shared > 0) sum += std::max<std::int64_t>(0, exposed_[i] - shared);
   }
@@ -320,7 +320,7 @@ Refusal Layout::settle(const Piece& piece, int orientation, int x, int y, Candid
 
 bool Layout::rests_on_obstacle(const Rectangle& face, int base) const {
   return std::ranges::any_of(
-      blocks_, [&](const Block& b) { return b.is_obstacle && is_at(b, base) && shared_area(face, b) > 0; });
+      blocks_, [&](const Block& b) { return b.is_obstacle && bears_at(b, base) && shared_area(face, b) > 0; });
 }
 
 bool Layout::is_balanced(const Rectangle& face, int base, int com_x, int com_y) const {
@@ -328,7 +328,7 @@ bool Layout::is_balanced(const Rectangle& face, int base, int com_x, int com_y) 
   const int m = rules_.com_margin;
   std::vector<Point> corners;
   for (const Block& b : blocks_) {
-    if (!is_at(b, base) || shared_area(face, b) == 0) continue;
+    if (!bears_at(b, base) || shared_area(face, b) == 0) continue;
     const Rectangle r{std::max(face.x1, b.x1), std::max(face.y1, b.y1), std::min(face.x2, b.x2),
                       std::min(face.y2, b.y2)};
     if (com_x - m >= r.x1 && com_x + m <= r.x2 && com_y - m >= r.y1 && com_y + m <= r.y2) return true;
@@ -367,10 +367,10 @@ void Layout::add_load(std::size_t upper, double mass) {
   const Rectangle face = footprint(top);
   double total = 0.0;
   for (std::size_t i = 0; i < upper; ++i)
-    total += is_at(blocks_[i], top.z1) ? static_cast<double>(shared_area(face, blocks_[i])) : 0.0;
+    total += bears_at(blocks_[i], top.z1) ? static_cast<double>(shared_area(face, blocks_[i])) : 0.0;
   if (total <= 0.0) return;
   for (std::size_t i = 0; i < upper; ++i) {
-    const double shared = is_at(blocks_[i], top.z1) ? static_cast<double>(shared_area(face, blocks_[i])) : 0.0;
+    const double shared = bears_at(blocks_[i], top.z1) ? static_cast<double>(shared_area(face, blocks_[i])) : 0.0;
     if (shared <= 0.0) continue;
     loads_[i] += mass * shared / total;
     add_load(i, mass * shared / total);

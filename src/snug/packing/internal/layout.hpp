@@ -137,7 +137,7 @@ class Layout {
   [[nodiscard]] bool carries(const Rectangle& face, int base, int mass) const;
   [[nodiscard]] bool rests_on_obstacle(const Rectangle& face, int base) const;
   void add_load(std::size_t upper, double mass);
-  [[nodiscard]] bool is_at(const Block& below, int base) const;
+  [[nodiscard]] bool bears_at(const Block& below, int base) const;
   [[nodiscard]] Bearing bearing_of(const Block& block) const;
   /// Calls visit(index, mass, place) for every block on which a part of a load rests that goes through `bearing`.
   template <class Visit>
