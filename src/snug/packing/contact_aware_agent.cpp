@@ -99,19 +99,24 @@ bool are_of_a_grid(const Planning& planning, std::span<const Item> kinds) {
   return unit >= least_unit(planning);
 }
 
+constexpr double kCentimetre = 0.01;  ///< by which sizes are compared, since one of the boxes has been measured
+
+bool have_one_size(std::span<const Item> kinds) {
+  return std::ranges::all_of(kinds, [&kinds](const Item& kind) {
+    return (kind.size - kinds.front().size).lpNorm<Eigen::Infinity>() < kCentimetre;
+  });
+}
+
 /// Boxes of one size and modular cartons, whose lengths and widths are of a grid: their rows leave few gaps, and need
-/// the places at the rim for as many rows as can be. To a centimetre, since one of the boxes has been measured.
+/// the places at the rim for as many rows as can be.
 bool stand_in_rows(const Planning& planning, std::span<const Item> kinds) {
-  constexpr double kCentimetre = 0.01;
   int unit = 0;
-  bool has_one_size = true;
   for (const Item& kind : kinds) {
-    has_one_size &= (kind.size - kinds.front().size).lpNorm<Eigen::Infinity>() < kCentimetre;
     for (int axis = 0; axis < 2; ++axis) {
       unit = std::gcd(unit, to_ticks(kCentimetre * std::round(kind.size[axis] / kCentimetre)));
     }
   }
-  return has_one_size || unit >= least_unit(planning);
+  return have_one_size(kinds) || unit >= least_unit(planning);
 }
 
 /// Those that go on in roll-outs: the one of which more gets in decides. The tuned one knows edges that add up; maximal
@@ -428,7 +433,10 @@ Policy make_policy(const Planning& planning, std::span<const Item> kinds) {
   }
   const int longest = to_ticks(planning.inner_size.head<2>().maxCoeff());
   Weights weights = default_weights();
-  if (!planning.has_walls) weights = stand_in_rows(planning, kinds) ? pallet_row_weights() : pallet_weights();
+  if (!planning.has_walls) {
+    weights = have_one_size(kinds) ? pallet_layer_weights() : pallet_weights();
+    if (stand_in_rows(planning, kinds)) weights[Loose] = 0.0;
+  }
   return {weights, WasteTable(along, longest), WasteTable(up, to_ticks(planning.inner_size.z()))};
 }
 

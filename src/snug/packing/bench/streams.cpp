@@ -209,7 +209,7 @@ std::optional<internal::Weights> weights_of(const std::string& agent) {
   if (agent == "mixed") return internal::default_weights();
   if (agent == "grid") return internal::grid_weights();
   if (agent == "pallet") return internal::pallet_weights();
-  if (agent == "pallet-rows") return internal::pallet_row_weights();
+  if (agent == "pallet-layers") return internal::pallet_layer_weights();
   if (agent != "lowest") return std::nullopt;
   internal::Weights lowest{};
   lowest[internal::Top] = 1.0;

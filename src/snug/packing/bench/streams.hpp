@@ -29,7 +29,7 @@ struct Stream {
 [[nodiscard]] std::vector<Stream> load_streams(const std::filesystem::path& orders);
 
 /// Greedy agents: contact (most of the surface touches boxes, floor and walls), lowest (upper face as low as can be),
-/// and the policies of the roll-outs by themselves: mixed, grid, pallet, pallet-rows.
+/// and the policies of the roll-outs by themselves: mixed, grid, pallet, pallet-layers.
 [[nodiscard]] bool is_greedy(const std::string& agent);
 /// The place that such an agent takes.
 [[nodiscard]] std::optional<Candidate> place_greedily(const std::string& agent, const Stream& stream,

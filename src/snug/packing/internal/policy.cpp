@@ -158,7 +158,7 @@ Weights pallet_weights() {
   return w;
 }
 
-Weights pallet_row_weights() {
+Weights pallet_layer_weights() {
   Weights w = default_weights();
   // A tenth of the height counts as much as a face that touches all round; a few millimetres of unevenness do not.
   w[Base] += 10.0;

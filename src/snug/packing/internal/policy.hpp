@@ -39,8 +39,8 @@ using Weights = std::array<double, kFeatureCount>;
 /// Of pallets, where nothing holds a column that stands by itself, and what tips easily or is not backed against film
 /// costs. Tuned on cartons of three to ten sizes.
 [[nodiscard]] Weights pallet_weights();
-/// For boxes of which rows are as long as the pallet: layer by layer.
-[[nodiscard]] Weights pallet_row_weights();
+/// For boxes of one size: layer by layer.
+[[nodiscard]] Weights pallet_layer_weights();
 /// Maximal contact, and of two places the lower one.
 [[nodiscard]] Weights pallet_contact_weights();
 
