@@ -114,7 +114,9 @@ void Layout::add(const Block& block) {
   double below = 0.0;
   const Rectangle face = footprint(block);
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    below += columns_[i] * static_cast<double>(shared_area(face, blocks_[i]));
+    const std::int64_t shared = shared_area(face, blocks_[i]);
+    below += columns_[i] * static_cast<double>(shared);
+    if (!rules_.has_walls && bears_at(blocks_[i], block.z1)) exposed_[i] -= shared;
   }
   const auto area = static_cast<double>(area_of(face));
   columns_.push_back(std::max(0.0, block.z2 - below / area));
@@ -125,9 +127,6 @@ void Layout::add(const Block& block) {
       bearings_[static_cast<std::size_t>(index)].first_moment += mass * place;
     });
     bearings_.push_back(bearing);
-    for (std::size_t i = 0; i < blocks_.size(); ++i) {
-      if (bears_at(blocks_[i], block.z1)) exposed_[i] -= shared_area(face, blocks_[i]);
-    }
     exposed_.push_back(area_of(face));
   }
   blocks_.push_back(block);

@@ -390,10 +390,12 @@ TEST(LayoutBacking, CountsOnPalletsForCartonsThatAreNotModular) {
   EXPECT_EQ(make_policy(planning, kinds).weights[Loose], 0.0) << "rows of 400 x 300 and 600 x 400 mm have no gaps";
   kinds[1].size.x() = 0.35;
   EXPECT_EQ(make_policy(planning, kinds).weights[Loose], 0.0) << "nor those of multiples of 50 mm";
+  EXPECT_GT(make_policy(planning, kinds).weights[Exposed], 0.0) << "else they are placed as others";
   kinds[1].size.x() = 0.36;
   EXPECT_GT(make_policy(planning, kinds).weights[Loose], 0.0);
   kinds[0].size = {0.364, 0.3, 0.2};
   EXPECT_EQ(make_policy(planning, kinds).weights[Loose], 0.0) << "one size";
+  EXPECT_EQ(make_policy(planning, kinds).weights[Exposed], 0.0) << "which is stacked layer by layer";
   kinds[0].size.x() = 0.38;
   planning.has_walls = true;
   EXPECT_EQ(make_policy(planning, kinds).weights[Loose], 0.0) << "no film";
